@@ -14,7 +14,7 @@ import numpy as np
 import yaml
 from hypothesis import strategies as st
 
-from cysyk1999.studies.accuracy.run import split
+from cysyk1999.studies.common.meshes import split
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import load_scene, scene_json_schema
 from fingerpad.specimen import build_pad_mesh, read_pad_mesh, write_pad

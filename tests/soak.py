@@ -26,7 +26,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import Flaky
 
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.stability.run import Late, in_time
+from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from fingerpad.cli import main
 from random_scenes import Drawn, anything, write_files
 
@@ -225,9 +225,9 @@ def soak(count: int, start: int, seconds: float) -> Soak:
         if time.process_time() > ends:
             return
         try:
-            with in_time(SLOWEST):
+            with time_limit(SLOWEST):
                 outcome = tried(drawn, folder)
-        except Late:
+        except OutOfTime:
             outcome = LATE
         except Exception as error:
             if found.failure is None:

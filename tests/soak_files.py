@@ -22,7 +22,7 @@ import yaml
 
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import ReferenceDataError, read_force_depth
-from cysyk1999.studies.stability.run import Late, in_time
+from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from fingerpad.specimen import write_pad
 from own_meshes import SLAB, slab_mesh
 from soak import command, judged, require, said
@@ -220,9 +220,9 @@ def _outcome(verb, folder: Path, file: str) -> str:
     more = () if verb == "plan" else ("--out", out, "--quiet", "--force")
     words = (verb, folder / "scene.yaml", *more)
     try:
-        with in_time(SLOWEST):
+        with time_limit(SLOWEST):
             code, _, err = command(*words)
-    except Late:
+    except OutOfTime:
         return f"not done in {SLOWEST:g} s"
     said(words, code, err)
     if code == 0 and verb == "run":

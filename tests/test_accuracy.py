@@ -10,19 +10,34 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from cysyk1999.measures.errors import PARTS
+import drawn as made_up
+import synthetic
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.errors import PARTS, Curve, norm
 from cysyk1999.studies.accuracy import belief, drawn, ridges
 from cysyk1999.studies.accuracy import errors as found
 from cysyk1999.studies.accuracy import run as study
+from cysyk1999.studies.accuracy.compare import covered, difference
 from cysyk1999.studies.accuracy.convergence import fitted_order, limit, observed_order
 from cysyk1999.studies.accuracy.picture import STUDIES
-from cysyk1999.studies.accuracy.run import FAMILY, Point, points, split
+from cysyk1999.studies.accuracy.run import FAMILY, Point, points
+from cysyk1999.studies.accuracy.shown import (
+    FINER,
+    MADE_FINER,
+    STATED,
+    STATED_MESH,
+    TRUE,
+    Finer,
+    shown,
+)
 from cysyk1999.studies.accuracy.strokes import LARGEST, MEAN, discretised, strokes, strokes_table
+from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.plans import finer
 from fingerpad import load_scene, plan
-from fingerpad.planning.errors import PLATES, WAVES, StrokeErrors
+from fingerpad.planning.errors import COARSER, PLATES, PROFILE_ORDER, WAVES, StrokeErrors, remains
 from fingerpad.planning.plan import RULES
 from fingerpad.scenes.scene import Cylinder, Flat, Slide
-from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.build import build_pad_mesh, count_nodes
 from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
 
@@ -38,7 +53,7 @@ def scenes():
     return {family: load_scene(SCENES / f"{name}.yaml") for family, name in FAMILY.items()}
 
 
-# -- orders and limits ------------------------------------------------------------------------------------------------------
+# -- orders and limits ---
 
 
 @pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
@@ -73,7 +88,7 @@ def test_an_order_that_is_not_believed_is_reported_but_not_extrapolated_with():
     assert fast.uncertainty == pytest.approx(3 * abs(step))
 
 
-# -- meshes and points ------------------------------------------------------------------------------------------------------
+# -- meshes and points ---
 
 
 @pytest.mark.parametrize(("kind", "parts"), [("quad4", 4), ("tri6", 2)])
@@ -93,12 +108,6 @@ def test_split_mesh_has_the_same_nodes_area_and_skin(scenes, kind, parts):
     )
     half = new.right_half()
     assert len(half.cells) == len(new.cells) / 2 and half.points[half.cells].mean(1)[:, 0].min() > 0
-
-
-def test_meshes_of_quads_are_split_into_quads_or_triangles_only(scenes):
-    mesh = build_pad_mesh(scenes["flat"].specimen.outline, MeshSize(1e-3, 3e-3, 0.85e-3, 3.0))
-    with pytest.raises(ValueError, match="hexagons"):
-        split(mesh, "hexagons")
 
 
 def test_the_plane_is_complete_and_names_tell_points_apart():
@@ -121,20 +130,20 @@ def test_sizes_span_what_they_should(scenes):
     """From about 500 to 100,000 nodes; the default's row is the thesis's preset where that is not
     refined for a contact.
     """
-    from fingerpad.specimen.build import count_nodes
+    scene = scenes["flat"]
 
-    sizes = [
-        study.discretised(Point("flat", rows=rows), scenes["flat"])[1].mesh_size
+    def nodes_of(size):
+        return count_nodes(scene.specimen.outline, size)
+
+    nodes = {
+        rows: nodes_of(study.discretised(Point("flat", rows=rows), scene)[1].mesh_size)
         for rows in study.ROWS
-    ]
-    nodes = [count_nodes(scenes["flat"].specimen.outline, size) for size in sizes]
-    assert nodes == sorted(nodes) and nodes[0] < 600 and 90_000 < nodes[-1] < 110_000
-    default = plan(scenes["flat"].model_copy(update={"accuracy": "thesis"})).mesh_size
+    }
+    assert list(nodes.values()) == sorted(nodes.values())
+    assert nodes[1] < 600 and 90_000 < nodes[22] < 110_000
+    default = plan(scene.with_accuracy("thesis")).mesh_size
     default = replace(default, focus=(), skin_radial_edge=None)
-    assert (
-        count_nodes(scenes["flat"].specimen.outline, default)
-        == nodes[study.ROWS.index(study.DEFAULT_ROWS)]
-    )
+    assert nodes_of(default) == nodes[study.DEFAULT_ROWS]
 
 
 @pytest.mark.parametrize("element", ["Q1P0", "Q2R"])
@@ -143,21 +152,16 @@ def test_a_point_is_measured(scenes, element):
     energies too.
     """
     (record,) = study.measure_all([Point("210", element, 1, steps=5)], scenes["210"])
-    assert not record["failure"] and all(np.all(np.array(v) > 0) for v in record["values"].values())
-    assert set(record["values"]) == set(found.QUANTITIES) and len(record["values"]["depth"]) == 2
-    cost = record["cost"]
-    assert (
-        cost["nodes"] == 396
-        and cost["steps"] == 10
-        and len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 3
-    )
-    ratios = sorted(a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True))
-    assert record["made_by"]["processor"] and study.seconds(record, 2.0) == pytest.approx(
-        2 * ratios[1]
-    )
+    values, cost = record["values"], record["cost"]
+    assert not record["failure"] and all(np.all(np.array(v) > 0) for v in values.values())
+    assert set(values) == set(found.QUANTITIES) and len(values["depth"]) == 2
+    assert cost["nodes"] == 396 and cost["steps"] == 10
+    assert len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 3
+    ratios = np.divide(cost["cpu_s"], cost["yardstick_s"])
+    assert study.seconds(record, 2.0) == pytest.approx(2 * np.median(ratios))
 
 
-# -- errors of made-up runs --------------------------------------------------------------------------------------------------
+# -- errors of made-up runs ---
 
 
 @pytest.fixture(scope="module")
@@ -166,35 +170,20 @@ def records():
     default: 1).
     """
     out = {}
+    packages = dict.fromkeys(("numpy", "numba", "mkl", "gmsh"), "1.0")
+    common = {"failure": "", "load": 0.0, "believed_error": 0.01}
+    common["made_by"] = {"processor": "abacus", "python": "3", "packages": packages}
     for name, point in points().items():
         preset = {"draft": (4, 10), "fine": (14, 40)}.get(point.preset, (point.rows, point.steps))
         size, step = 7 / preset[0], 20 / preset[1]
         value = 1e-3 * (2 + 0.1 * size**2 + 0.02 * step) * (1 if point.finite else 1.1)
         moments = 5 if point.family == "stroke" else 2
-        values = {quantity: [value] * moments for quantity in found.HEADLINE} | {
-            "peak energy rate": [value] * 2
-        }
-        cost = {
-            "cpu_s": [preset[0] ** 2 * preset[1] / 1000] * 3,
-            "yardstick_s": [0.2] * 3,
-            "memory_MB": 100.0,
-            "steps": preset[1],
-            "nodes": 220 * preset[0] ** 2,
-            "unknowns": 1,
-            "iterations": 1,
-            "cutbacks": 0,
-        }
-        packages = dict.fromkeys(("numpy", "numba", "mkl", "gmsh"), "1.0")
-        made = {"processor": "abacus", "python": "3", "packages": packages}
-        record = {
-            "point": vars(point),
-            "name": name,
-            "failure": "",
-            "values": values,
-            "cost": cost,
-            "load": 0.0,
-        }
-        out[name] = record | {"made_by": made, "believed_error": 0.01}
+        values = dict.fromkeys(found.HEADLINE, [value] * moments)
+        cost = dict.fromkeys(("unknowns", "iterations", "cutbacks", "memory_MB"), 1)
+        cost |= {"nodes": 220 * preset[0] ** 2, "steps": preset[1], "yardstick_s": [0.2] * 3}
+        cost["cpu_s"] = [preset[0] ** 2 * preset[1] / 1000] * 3
+        record = {"point": vars(point), "name": name, "cost": cost}
+        out[name] = common | record | {"values": values | {"peak energy rate": [value] * 2}}
     return out
 
 
@@ -234,26 +223,20 @@ def test_planner_is_told_of_mesh_and_steps_apart(records):
     assert (rows.loc["mesh", "1260"].diff().dropna() <= 0).all()
 
 
-def test_historical_models_are_fitted_to_the_plate(records, scenes):
+def test_historical_models_are_fitted_to_the_plate(scenes):
     """Their modulus and tension give the plate its width; sharper surfaces sink deeper into
     both.
     """
     for model, fit in found.MODELS.values():
         constant = fit(scenes["flat"], 4.8e-3)
-        flat, sharp = model(scenes["flat"], 0.0, constant), model(scenes["1260"], 1259.84, constant)
+        flat, sharp = (model(scenes[family], constant) for family in ("flat", "1260"))
         assert flat["width"] == pytest.approx(4.8e-3, rel=1e-5)
         assert sharp["depth"] > flat["depth"] and sharp["width"] < flat["width"]
-    assert "energy 600 um" not in flat
 
 
 def test_front_has_what_nothing_beats():
     on = found.pareto(np.array([1, 2, 3, 4, 2]), np.array([9.0, 4.0, 5.0, np.nan, 3.0]))
     assert on.tolist() == [True, False, False, False, True]
-
-
-def test_growth_is_the_exponent():
-    nodes = np.array([400, 4e3, 1e4, 1e5])
-    assert found.growth(nodes, np.r_[9.0, 2e-4 * nodes[1:] ** 1.2]) == pytest.approx((2e-4, 1.2))
 
 
 @pytest.mark.parametrize("name", ["accuracy_error", "accuracy_error_stroke", "accuracy_growth"])
@@ -279,7 +262,7 @@ def test_presets_have_error_and_cost(table):
     assert worst["draft"] > worst["thesis"] > worst["fine"]
 
 
-# -- what the planner goes by -----------------------------------------------------------------------------------------------
+# -- what the planner goes by ---
 
 
 def test_planner_believes_at_least_the_committed_errors():
@@ -367,16 +350,14 @@ def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
     mesh is not.
     """
     scene = scenes["210"].model_copy(update={"stimulus": Cylinder(curvature=curvature)})
-    plans = [
-        plan(scene.model_copy(update={"accuracy": tolerance})) for tolerance in (0.1, 0.05, 0.02)
-    ]
+    plans = [plan(scene.with_accuracy(tolerance)) for tolerance in (0.1, 0.05, 0.02)]
     for chosen, tolerance in zip(plans, (0.1, 0.05, 0.02), strict=True):
         assert chosen.estimated_error <= tolerance
     work = [chosen.nodes * chosen.steps for chosen in plans]
     assert work == sorted(work) and work[0] < work[-1]
 
 
-# -- belief ------------------------------------------------------------------------------------------------------------------
+# -- belief ---
 
 
 def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
@@ -385,7 +366,7 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
     assert len({scene.model_dump_json() for scene in outside.values()}) == len(outside)
     for scene in outside.values():
         for accuracy in belief.LEVELS:
-            assert plan(scene.model_copy(update={"accuracy": accuracy})).estimated_error > 0
+            assert plan(scene.with_accuracy(accuracy)).estimated_error > 0
 
 
 def test_drawn_scenes_are_of_every_class_and_drawn_the_same_again():
@@ -398,16 +379,15 @@ def test_drawn_scenes_are_of_every_class_and_drawn_the_same_again():
 
 def test_truth_is_on_shorter_edges_and_asks_no_tolerance():
     chosen = plan(load_scene(SCENES / "steady_bar_1_16_inch.yaml").with_accuracy(0.05))
-    truth = belief.finer(chosen, 2.0)
+    truth = finer(chosen, 2.0)
     assert truth.mesh_size.skin_edge == chosen.mesh_size.skin_edge / 2 and truth.missed(9.0) is None
-    assert [edge for _, edge in truth.mesh_size.focus] == [
-        edge / 2 for _, edge in chosen.mesh_size.focus
-    ]
+    edges = [[edge for _, edge in one.mesh_size.focus] for one in (truth, chosen)]
+    assert edges[0] == [edge / 2 for edge in edges[1]]
 
 
 def test_committed_beliefs_cover_the_truth():
     rows = pd.read_csv(TABLES / "accuracy_belief.csv", dtype={"accuracy": str})
-    assert set(rows["scene"]) == set(belief.OUTSIDE) and belief.covered(rows) >= 0.9
+    assert set(rows["scene"]) == set(belief.OUTSIDE) and covered(rows).mean() >= 0.9
     assert STUDIES["accuracy_belief"](rows).axes
 
 
@@ -467,6 +447,7 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
     columns |= {
         "indentation_depth": [0.0, press, *[press] * count],
         "centre_pressure": [0.0, 1.0, *pressures],
+        "peak_pressure": [0.0, 1.0, *pressures],
     }
     columns["peak_pressure"] = columns["centre_pressure"]
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
@@ -474,7 +455,7 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
 
 def test_difference_of_a_press_is_at_its_end_and_names_the_worst_quantity():
     one, other = a_history(1.1, [], []), a_history(1.0, [], [])
-    error, worst = belief.difference(one, other, ("indentation_depth", "centre_pressure"))
+    error, worst = difference(one, other, ("indentation_depth", "centre_pressure"))
     assert error == pytest.approx(0.1) and worst == "indentation_depth"
 
 
@@ -485,7 +466,7 @@ def test_difference_of_a_stroke_is_root_mean_square_of_the_largest():
     fine, coarse = np.linspace(0.01, 2, 400), np.linspace(0.1, 2, 20)
     truth = a_history(1.0, fine, 4 - fine**2)
     for sign in (1, -1):  # a way back counts as a way
-        error, worst = belief.difference(
+        error, worst = difference(
             a_history(1.0, sign * coarse, 4.2 - coarse**2), truth, ("centre_pressure",)
         )
         assert worst == "centre_pressure" and error == pytest.approx(0.05, rel=1e-3)
@@ -498,12 +479,12 @@ def test_beliefs_cover_the_truth(scenes, name):
     """Of runs made now, held to a finer run of their own: a few of the study's scenes, its table
     has all of them.
     """
-    scene = belief.prepared(name, scenes["210"]).model_copy(update={"accuracy": "thesis"})
+    scene = belief.outside(scenes["210"])[name].with_accuracy("thesis")
     rows = pd.DataFrame(belief.beliefs(scene, name, ("draft", 0.05)))
-    assert belief.covered(rows) == 1 and (rows["true error (%)"].dropna() > 0).all()
+    assert covered(rows).all() and (rows["true error (%)"].dropna() > 0).all()
 
 
-# -- figures state theirs ----------------------------------------------------------------------------------------------------
+# -- figures state theirs ---
 
 GEOMETRY = {"3-4", "3-5", "5-25"}
 """Figures of the pad itself, for which nothing is solved."""
@@ -547,49 +528,33 @@ def test_every_simulated_curve_has_its_errors(path):
 
 
 def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
-    """In the published table of scenes drawn outside the cylinders, sixty of them."""
-    from cysyk1999.studies.accuracy.drawn import CLASSES, CORNERED, OWN, SCENES
-
-    table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(
-        subset="true error (%)"
-    )
-    covered = (
-        (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
-    )
-    assert len(table) == SCENES + CORNERED + OWN and set(covered.index) == set(CLASSES)
-    assert (covered >= 0.9).all(), covered
+    """In the published table of scenes drawn outside the cylinders."""
+    table = pd.read_csv(TABLES / "accuracy_drawn.csv")
+    share = covered(table).groupby(table["class"]).mean()
+    assert len(covered(table)) == drawn.SCENES + drawn.CORNERED + drawn.OWN
+    assert set(share.index) == set(drawn.CLASSES) and (share >= 0.9).all(), share
 
 
-# -- errors that figures state ------------------------------------------------------------------------------------------------
+# -- errors that figures state ---
 
 
 def test_stated_errors_stand_beside_those_of_the_curves():
     """Made-up companions 1 % away and finer runs 2 %: every curve states what is left of the one
     and errs by all of the other.
     """
-    import synthetic
-    from cysyk1999.figures.registry import FIGURES
-    from cysyk1999.studies.accuracy.shown import FINER, MADE_FINER, STATED, STATED_MESH, TRUE, shown
-    from drawn import REFERENCE, results
-    from fingerpad.planning.errors import COARSER, PROFILE_ORDER, remains
-
-    histories, meshes, coarse, reference = results()
-    finer = {
-        name: history
-        for name, history in synthetic.histories(1.02).items()
-        if name.startswith(MADE_FINER)
-    }
+    histories, meshes, coarse, reference = made_up.results()
+    more = synthetic.histories(1.02)
+    truth = {name: history for name, history in more.items() if name.startswith(MADE_FINER)}
     figures = [
-        (FIGURES[number], FIGURES[number].measurements(REFERENCE.parent))
+        (FIGURES[number], FIGURES[number].measurements(made_up.REFERENCE.parent))
         for number in ("4-14", "5-6", "3-8")
     ]
-    table = shown(figures, (histories, meshes, coarse), finer, reference)
+    table = shown(figures, (histories, meshes, coarse), truth, reference)
     assert set(table["figure"]) == {"4-14", "5-6"}  # no finer runs of chapter 3
     mesh = table[table["curve"].str.contains("10 mm/s|simulated|79") | (table["figure"] == "4-14")]
     left, remaining = (remains(edges, PROFILE_ORDER) for edges in (FINER, COARSER))
-    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(
-        2 * left / remaining, rel=0.3
-    )
+    ratio = (mesh[TRUE] / mesh[STATED_MESH]).to_numpy()
+    assert ratio == pytest.approx(2 * left / remaining, rel=0.3)
     assert (table[STATED] >= table[STATED_MESH]).all()
     frame = found.FRAMES["accuracy_shown"](table)
     assert len(STUDIES["accuracy_shown"](frame).axes) == 2 and len(frame) <= len(table)
@@ -600,9 +565,6 @@ def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
     """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges,
     chords between them do not.
     """
-    from cysyk1999.measures.errors import Curve, norm
-    from cysyk1999.studies.accuracy.shown import FINER, Finer
-    from fingerpad.planning.errors import remains
 
     def profile(spacing: float, more: float = 0.0) -> xr.Dataset:
         x = np.arange(0, 1 + spacing / 2, spacing)
@@ -618,19 +580,11 @@ def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
 
 
 def test_errors_stated_in_the_published_figures_are_those_of_their_curves():
-    """Of nearly all at least half of it; few are wrong by more than 3 %, and most state no more
-    than a few times what they are.
-
-    Strain energies state more than before, for what receptors read converges faster than the order
-    that is taken of all curves.
+    """Of nearly all at least half of it, of seven in eight all; few are wrong by more than 3 %, and
+    most state no more than a few times what they are.
     """
-    drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
-    true, stated = drawn["true error (%)"], drawn["stated error (%)"]
-    assert len(drawn) > 400 and drawn["figure"].nunique() > 40
-    assert (true <= 2 * stated).mean() > 0.97
+    table = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
+    true, stated = table[TRUE], table[STATED]
+    assert len(table) > 400 and table["figure"].nunique() > 40
+    assert (true <= stated).mean() > 0.875 and (true <= 2 * stated).mean() > 0.97
     assert (true > 3).mean() < 0.01 and stated.median() < 4 * true.median()
-
-
-def test_errors_stated_in_the_published_figures_cover_the_true_ones_of_seven_in_eight():
-    drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
-    assert (drawn["true error (%)"] <= drawn["stated error (%)"]).mean() > 0.875

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cysyk1999.studies.stability.hard_cases import scene_of
+from cysyk1999.studies.common.documents import scene_of
 from fingerpad.planning.estimates import PadEstimate, layer_kernel
 from fingerpad.planning.plan import RULES, PlanError, plan, read_plan
 from fingerpad.planning.schedule import schedule

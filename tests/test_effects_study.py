@@ -11,9 +11,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cysyk1999.studies.common.documents import (
+    FLAT,
+    cylinder,
+    depth,
+    force,
+    hold,
+    scene_of,
+    slide,
+)
+from cysyk1999.studies.common.plans import with_effects
 from cysyk1999.studies.effects.picture import LEAST, WARNING, assemble, effects, looks
 from cysyk1999.studies.effects.run import (
-    DECIDES,
     alternatives,
     changes,
     evidence,
@@ -23,16 +32,6 @@ from cysyk1999.studies.effects.run import (
     rules_table,
     study,
     verdict,
-    with_effects,
-)
-from cysyk1999.studies.stability.hard_cases import (
-    FLAT,
-    cylinder,
-    depth,
-    force,
-    hold,
-    scene_of,
-    slide,
 )
 from fingerpad import plan, simulate
 from fingerpad.planning.plan import Rules
@@ -47,7 +46,7 @@ def made(*motion, stimulus=FLAT, **more):
     )
 
 
-# -- what is left out costs nothing -------------------------------------------------------------------------------------------
+# -- what is left out costs nothing ---
 
 
 def executed(scene):
@@ -148,7 +147,7 @@ def test_steady_scene_does_no_time_stepping():
     assert plan(held).steps == plan(press).steps + 1
 
 
-# -- the study ----------------------------------------------------------------------------------------------------------------
+# -- the study ---
 
 
 def test_changes_are_nothing_between_alike_and_something_between_others():
@@ -218,7 +217,7 @@ def test_pairs_cover_every_effect_where_it_matters_or_not():
 
 
 def test_every_rule_says_what_it_decides():
-    assert set(DECIDES) == {field.name for field in fields(Rules)}
+    assert all(field.metadata["decides"] for field in fields(Rules))
 
 
 def test_a_small_study_is_drawn_and_tabulated():
@@ -233,31 +232,12 @@ def test_a_small_study_is_drawn_and_tabulated():
         one["change"].item() < 1e-3
         and one["unknowns with"].item() < 0.6 * one["unknowns without"].item()
     )
-    choice = {
-        "seed": 1,
-        "scene": "s",
-        "stimulus": "flat",
-        "accuracy": 0.02,
-        "worth": 0.1,
-        "of": "depth",
-        "why": "",
-    }
+    choice = {"seed": 1, "scene": "s", "effect": "finite_strain", "share": 5.0}
+    choice |= {"worth": 0.1, "of": "depth"}
     found = pd.DataFrame(
         [
-            choice
-            | {
-                "effect": "finite_strain",
-                "planned": "on",
-                "share": 5.0,
-                "verdict": "rightly carried",
-            },
-            choice
-            | {
-                "effect": "finite_strain",
-                "planned": "off",
-                "share": 5.0,
-                "verdict": "wrongly left out",
-            },
+            choice | {"planned": "on", "verdict": "rightly carried"},
+            choice | {"planned": "off", "verdict": "wrongly left out"},
         ]
     )
     table = evidence(one, found)

@@ -8,10 +8,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from cysyk1999.studies.common.documents import FLAT, scene_of
 from cysyk1999.studies.effects.picture import assemble, looks
 from cysyk1999.studies.effects.picture import effects as picture
 from cysyk1999.studies.effects.run import pairs, rules_table, study
-from cysyk1999.studies.stability.hard_cases import FLAT, scene_of
 from fingerpad.planning import effects
 from fingerpad.planning.effects import EFFECTS, in_order, registered
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan
@@ -105,7 +105,7 @@ def test_an_own_effect_goes_into_the_picture_of_the_study(effect):
             study([pair for pair in pairs() if pair.effect == "cold"], repeats=1), choices
         )
         figure = picture(frame)
-        assert looks()["cold"].title == "cold fingers"
+        assert looks()["cold"][0] == "cold fingers"
     assert frame["change"].iloc[0] > 0.1, "it stiffens the dermis"
     left, _ = figure.axes[:2]
     assert "cold fingers: light" in [text.get_text() for text in left.texts]

@@ -7,7 +7,8 @@ import pytest
 
 from cysyk1999.publishing.style import PAGE_WIDTH, TALLEST
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.stability.picture import METHODS, assemble, heat_map, long, table, tally
+from cysyk1999.studies.stability.cases import METHODS
+from cysyk1999.studies.stability.picture import assemble, heat_map, long, table, tally
 
 pytestmark = pytest.mark.unit
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cysyk1999.studies.accuracy.run import split
-from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, scene_of
+from cysyk1999.studies.common.documents import FLAT, cylinder, scene_of
+from cysyk1999.studies.common.meshes import split
 from fingerpad import simulation
 from fingerpad.cli import _error_line, main
 from fingerpad.planning.estimates import PadEstimate

@@ -7,12 +7,16 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
-from cysyk1999.studies.stability.catalogue import APART, CATALOGUE, COMBINED, FACTORS, allowed
-from cysyk1999.studies.stability.catalogue import combinations as rows_of_catalogue
-from cysyk1999.studies.stability.covering import covering
-from cysyk1999.studies.stability.hard_cases import FLAT, PICKED, Case, depth, force, slide
-from cysyk1999.studies.stability.invariants import Held, difference, mirrored
+from cysyk1999.studies.common.documents import FLAT, depth, force, slide
+from cysyk1999.studies.stability.cases import (
+    COMBINED,
+    FOLDER,
+    PICKED,
+    Case,
+)
+from cysyk1999.studies.stability.invariants import Reactions, difference, mirrored
 from cysyk1999.studies.stability.relaxing import relaxed
 from cysyk1999.studies.stability.run import second_solver, simulation
 from fingerpad.mechanics.stepping import NonConvergence, hard_here
@@ -20,101 +24,71 @@ from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
 
 pytestmark = pytest.mark.stability
+COMBINATIONS = yaml.safe_load((FOLDER / "combinations.yaml").read_text(encoding="utf-8"))
+FACTORS: dict[str, list[str]] = COMBINATIONS["factors"]
 
 
-def missing(factors, rows, may=lambda pair: True):
-    """Pairs of hard levels that may meet and do not; written out, not taken from the code under
-    test.
-    """
-    met = {frozenset(pair) for row in rows for pair in combinations(row.items(), 2)}
-    wanted = [
-        ((one, level), (other, beside))
-        for one, other in combinations(factors, 2)
-        for level, beside in product(list(factors[one])[1:], list(factors[other])[1:])
-        if may({one: level, other: beside})
-    ]
-    return [pair for pair in wanted if frozenset(pair) not in met]
+# -- combinations ---
 
 
-# -- the covering array -------------------------------------------------------------------------------------------------------
+def pairs(levels):
+    """Every two of some levels of factors, as sets of (factor, level)."""
+    return {frozenset(pair) for pair in combinations(levels.items(), 2)}
+
+
+def apart():
+    """Pairs of levels that cannot meet."""
+    found = set()
+    for entry in COMBINATIONS["apart"]:
+        (one, first), (other, second) = (item for item in entry.items() if item[0] != "why")
+        assert entry["why"] and set(first) <= set(FACTORS[one]), entry
+        assert set(second) <= set(FACTORS[other]), entry
+        found |= {frozenset([(one, a), (other, b)]) for a, b in product(first, second)}
+    return found
 
 
 def test_every_two_hard_levels_that_may_meet_do():
-    rows = rows_of_catalogue()
-    assert len(rows) == len(COMBINED) and not missing(FACTORS, rows, allowed)
-    assert all(set(row) == set(FACTORS) for row in rows)
-    together = {frozenset(pair) for row in rows for pair in combinations(row.items(), 2)}
-    assert not together & {frozenset(pair) for pair in APART}
-
-
-def test_pairs_that_are_kept_apart_are_few_and_say_why():
-    known = {(factor, level) for factor, levels in FACTORS.items() for level in levels}
-    assert all(set(pair) <= known and why for pair, why in APART.items())
-    pairs = sum(
-        (len(FACTORS[one]) - 1) * (len(FACTORS[other]) - 1)
+    wanted = {
+        frozenset([(one, level), (other, beside)])
         for one, other in combinations(FACTORS, 2)
-    )
-    assert len(APART) < 0.03 * pairs
+        for level, beside in product(FACTORS[one][1:], FACTORS[other][1:])
+    }
+    met = set().union(*(pairs(case.levels) for case in COMBINED.values()))
+    missing = wanted - apart() - met
+    assert not missing and not met & apart(), sorted(map(sorted, missing))
+    assert len(apart()) < 0.03 * len(wanted)
+    assert max(len(case.levels) for case in COMBINED.values()) <= 5
 
 
-THREE = {"a": "e0123", "b": "exyz", "c": "epq"}
+def test_combinations_are_numbered_and_named_by_their_levels():
+    for number, (name, case) in enumerate(COMBINED.items(), start=len(PICKED) + 1):
+        every = {factor: levels[0] for factor, levels in FACTORS.items()} | case.levels
+        assert name == f"{number}: {every['stimulus']}, {every['pad']}"
+        assert case.group == every["stimulus"] and set(every) == set(FACTORS)
+        assert not {(f, level) for f, level in case.levels.items() if level == FACTORS[f][0]}
 
 
-def test_array_is_small_and_the_same_for_the_same_seed():
-    rows = covering(THREE, lambda pair: True, 1, 3)
-    assert not missing(THREE, rows) and 12 <= len(rows) <= 15
-    assert covering(THREE, lambda pair: True, 1, 3) == rows
-    assert missing(THREE, rows[:11]), "eleven rows cannot hold twelve pairs: the check itself"
-
-
-def test_rows_have_no_more_hard_levels_than_asked():
-    rows = covering(THREE, lambda pair: True, 1, 2)
-    assert len(rows) == 4 * 3 + 4 * 2 + 3 * 2 and not missing(THREE, rows)
-    assert all(sum(level != "e" for level in row.values()) == 2 for row in rows)
-
-
-def test_array_keeps_apart_what_cannot_meet():
-    def may(pair):
-        return not (pair.get("a") == "0" and pair.get("b") in ("y", "z"))
-
-    rows = covering(THREE, may, 1, 3)
-    assert not missing(THREE, rows, may) and all(
-        row["b"] in "ex" for row in rows if row["a"] == "0"
-    )
-
-
-# -- the cases ----------------------------------------------------------------------------------------------------------------
-
-
-def test_first_levels_are_easy_and_others_are_named():
-    """What makes a combination hard is said by its levels; names and numbers are the table's."""
-    for number, (case, row) in enumerate(
-        zip(COMBINED, rows_of_catalogue(), strict=True), start=len(PICKED) + 1
-    ):
-        assert (
-            case.name == f"{number}: {row['stimulus']}, {row['pad']}"
-            and list(CATALOGUE)[number - 1] == case.name
-        )
-        hard = {
-            factor: level
-            for factor, level in row.items()
-            if level != next(iter(FACTORS[factor])) and factor != "stimulus"
-        }
-        assert all(f"{factor} {level}" in case.hard for factor, level in hard.items())
-
-
-def test_hundreds_of_kinds_of_scene_are_read(tmp_path):
-    """A level of each factor in turn, beside easy ones: the scene says what the level does."""
+def test_scenes_do_what_their_levels_say(tmp_path):
+    """A scene of each level is read; only scenes of a level have its keys."""
     seen = {}
-    for case, row in zip(COMBINED, rows_of_catalogue(), strict=True):
-        for place in row.items():
-            seen.setdefault(place, case)
-    assert set(seen) == {(factor, level) for factor, levels in FACTORS.items() for level in levels}
+    for case in COMBINED.values():
+        scene, levels = case.document, case.levels
+        effects = scene["effects"]
+        assert (scene["friction"] != 0) == ("friction" in levels)
+        assert (effects["finite_strain"] == "off") == ("strain" in levels)
+        assert (effects.get("symmetry") == "off") == ("model" in levels)
+        timed = levels.get("time", "steady") not in ("steady", "one step")
+        assert (effects.get("viscoelasticity") == "on") == timed
+        assert len(scene["motion"]) == 1 or "then" in levels
+        assert f"law {levels.get('law')}" in case.hard or "yeoh" not in str(scene)
+        for level in levels.items():
+            seen.setdefault(level, case)
+    assert set(seen) == {(f, level) for f, levels in FACTORS.items() for level in levels[1:]}
     for case in {case.name: case for case in seen.values()}.values():
         assert case.read(tmp_path).name == case.name
 
 
-# -- what judges --------------------------------------------------------------------------------------------------------------
+# -- what judges ---
 
 PRESS = Case(
     "press",
@@ -126,11 +100,11 @@ PRESS = Case(
 
 def test_forces_balance_and_a_missing_one_is_seen(tmp_path):
     made = simulation(PRESS, "default", tmp_path)
-    held = Held(made)
-    history = made.run(held)
-    assert held.balance(history) < 1e-4
+    reactions = Reactions(made)
+    history = made.run(reactions)
+    assert reactions.balance(history) < 1e-4
     history["force"] = 1.01 * history["force"]
-    assert held.balance(history) == pytest.approx(0.01, rel=0.05)
+    assert reactions.balance(history) == pytest.approx(0.01, rel=0.05)
 
 
 def test_a_mirror_image_is_told_from_what_is_none():
@@ -176,7 +150,8 @@ def test_advice_is_tried_as_it_is_given():
     found = dict(
         relaxed(
             case,
-            "no convergence; try a finer skin mesh, a fillet on sharp edges, or a smaller depth or force",
+            "no convergence; try a finer skin mesh, a fillet on sharp edges, or a smaller depth or "
+            "force",
         )
     )
     assert [words.split(":")[0] for words in found] == ["load", "load", "load", "stimulus", "mesh"]

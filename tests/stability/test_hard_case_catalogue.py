@@ -10,15 +10,12 @@ import xarray as xr
 import yaml
 from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
-from cysyk1999.studies.stability import picture as figure
-from cysyk1999.studies.stability.catalogue import CATALOGUE, FAST
-from cysyk1999.studies.stability.hard_cases import PICKED, Limits
+from cysyk1999.studies.stability.cases import CATALOGUE, COMBINED, PICKED, Limits
 from cysyk1999.studies.stability.invariants import excess
 from cysyk1999.studies.stability.run import (
     ADMITS,
     CLEAN,
     LABOURS,
-    METHODS,
     SILENT,
     STABLE,
     compared,
@@ -33,6 +30,11 @@ from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, read_history
 
 pytestmark = pytest.mark.stability
+
+
+QUICK = (56, 59, 63, 66, 70, 73, 80, 83, 89, 97, 177, 192)
+"""Numbers of combinations that take no time."""
+FAST = [name for name in COMBINED if int(name.partition(":")[0]) in QUICK]
 
 
 @cache
@@ -70,7 +72,7 @@ def test_half_the_step_and_the_other_solver_change_little(name):
     check(found)
 
 
-# -- what the answers are besides stable --------------------------------------------------------------------------------------
+# -- what the answers are besides stable ---
 
 
 @pytest.mark.parametrize("nu", [0.48, 0.499, 0.49999])
@@ -149,7 +151,7 @@ def test_featherweight():
     )
 
 
-# -- failures -----------------------------------------------------------------------------------------------------------------
+# -- failures ---
 
 
 @pytest.mark.parametrize("name", MAY_FAIL)
@@ -184,7 +186,7 @@ def test_what_the_message_says_to_relax_makes_the_case_run(name):
     assert cured(CATALOGUE[name], done(name))
 
 
-# -- what the method buys -----------------------------------------------------------------------------------------------------
+# -- what the method buys ---
 
 
 @pytest.mark.parametrize(
@@ -359,7 +361,3 @@ def test_catalogue_says_what_is_hard_and_what_is_stable(tmp_path):
     for name in [*PICKED, *FAST]:
         assert CATALOGUE[name].read(tmp_path).name == name
     assert Limits(cuts=2).described() == "at most 2 cuts" and Limits().described() == "as all"
-
-
-def test_methods_of_study_and_figure_are_the_same():
-    assert tuple(figure.METHODS) == METHODS

@@ -123,7 +123,7 @@ def test_change_of_control(base):
     )
 
 
-# -- what cannot be done fails cleanly ----------------------------------------------------------------------------------------
+# -- what cannot be done fails cleanly ---
 
 
 PRESS = """

@@ -81,7 +81,7 @@ def sound_stroke(history, friction, **limits):
     assert np.abs(slip[state == 1]).max(initial=0.0) < 1e-6
 
 
-# -- coefficients, directions, speeds -----------------------------------------------------------------------------------------
+# -- coefficients, directions, speeds ---
 
 
 def turned_round(history, friction):
@@ -175,7 +175,7 @@ def test_slow_strokes_are_those_without_time(base):
         assert float(slow[name][-1]) == pytest.approx(float(steady[name][-1]), rel=1e-2)
 
 
-# -- control, loss of contact -------------------------------------------------------------------------------------------------
+# -- control, loss of contact ---
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.7])
@@ -244,7 +244,7 @@ def test_step_and_repeat_forgets(base):
     )
 
 
-# -- step size ----------------------------------------------------------------------------------------------------------------
+# -- step size ---
 
 
 @pytest.mark.parametrize("step, distance", [(0.03, 1.5), (1.0, 6.0)])
@@ -288,7 +288,7 @@ def test_output_does_not_depend_on_the_step(base):
         assert np.abs(values - finer).max() < 0.06 * np.abs(finer).max(), name
 
 
-# -- sharp edges --------------------------------------------------------------------------------------------------------------
+# -- sharp edges ---
 
 
 def teeth(height, land):
@@ -338,7 +338,7 @@ def test_gratings_with_sharp_edges(base, height, land, friction):
     )
 
 
-# -- the whole surface --------------------------------------------------------------------------------------------------------
+# -- the whole surface ---
 
 
 @pytest.mark.slow

@@ -225,7 +225,6 @@ def test_studies_make_their_tables_and_figures(thesis):
                     "accuracy_belief",
                     "accuracy_drawn",
                     "accuracy_own",
-                    "accuracy_shown",
                 ),
                 ("csv", "md"),
             ),

@@ -1,372 +1,318 @@
-"""Speed of the solver on this machine: ``python -m cysyk1999.studies.bench [--workflow]``.
+"""Speed on this machine: ``python -m cysyk1999.studies.bench [speed|sweeps]``.
 
-Everything is measured in one process with one thread, as medians of repeated runs; ratios within
-the process are what may be quoted, absolute times belong to the machine named in the table. Writes
-figures/tables/speed.csv and .md.
+``speed`` (the default) writes ``figures/tables/speed.csv`` and ``.md``; ``sweeps`` writes
+``sweeps.csv`` and ``.md``. Times are process times of one
+thread, medians of repeats, unless wall is said. Ratios are medians of pairs measured in turn, so
+that a busy machine slows both: they may be quoted; absolute times belong to the machine.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
-for _name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
+import numpy as np
+import pandas as pd
+from threadpoolctl import threadpool_limits
 
-import argparse  # noqa: E402
-import statistics  # noqa: E402
-import subprocess  # noqa: E402
-import sys  # noqa: E402
-import time  # noqa: E402
-from functools import partial  # noqa: E402
-from pathlib import Path  # noqa: E402
+from cysyk1999.publishing.write import publish_table
+from cysyk1999.studies.common.documents import FLAT, RAMP, SCENES, cylinder, force, scene_of
+from fingerpad.mechanics.linear_solver import condensation
+from fingerpad.planning.plan import plan
+from fingerpad.results import provenance, states_found
+from fingerpad.scenes.scene import load_scene
+from fingerpad.simulation import Simulation, simulate
+from fingerpad.sweeps.engine import lay_out
+from fingerpad.sweeps.language import load_sweep
+from fingerpad.sweeps.records import read_records
 
-import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
-from threadpoolctl import threadpool_limits  # noqa: E402
-
-from cysyk1999.receptors.sensor import TactileSensor  # noqa: E402
-from fingerpad.files import write_atomically  # noqa: E402
-from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
-from fingerpad.planning.plan import plan  # noqa: E402
-from fingerpad.receptors.laws import SpatialSum  # noqa: E402
-from fingerpad.results import provenance, states_found  # noqa: E402
-from fingerpad.scenes.scene import (
-    Cylinder,
-    Discretisation,
-    Flat,
-    Layer,
-    Layers,
-    PressToForce,
-    Scene,
-    load_scene,
-)  # noqa: E402
-from fingerpad.simulation import Simulation, simulate  # noqa: E402
-
-ROOT = Path(__file__).resolve().parents[3]
-SCENES = ROOT / "config" / "scenes"
-COLUMNS = ["what", "value", "unit", "target", "met", "repeats", "how"]
+TABLES = SCENES.parents[1] / "figures" / "tables"
+COMMANDS = Path(sys.executable).parent
+Rows = Iterator[dict[str, Any]]
 
 
-def seconds(call, repeats: int) -> tuple[float, float, float]:
-    """Least, median and largest process time (s) of ``call``."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        call()
-        times.append(time.process_time() - start)
-    return min(times), statistics.median(times), max(times)
+def seconds(call: Callable[[], Any]) -> float:
+    """Process time (s) of a call."""
+    start = time.process_time()
+    call()
+    return time.process_time() - start
 
 
-def newton_iteration(repeats: int = 15) -> list[list]:
-    """One Newton iteration of the whole pad against factorisation and solution of the same
-    matrix.
-    """
-    scene = load_scene(SCENES / "ramp40_k210.yaml").varied({"effects": {"symmetry": False}})
-    run = Simulation(scene, plan(scene), None)
-    stepper, body = run.stepper, run.body
-    steps = list(run.steps())
-    stepper.run(steps[:10])
-    plain, data, right = _plain(body)
+def median(call: Callable[[], Any], repeats: int) -> float:
+    """Median process time (s) of a call."""
+    return float(np.median([seconds(call) for _ in range(repeats)]))
 
-    def factor_and_solve():
+
+def ratio(one: Callable[[], Any], other: Callable[[], Any], repeats: int) -> float:
+    """Process time of a call over that of another: median of pairs in turn."""
+    return float(np.median([seconds(one) / seconds(other) for _ in range(repeats)]))
+
+
+def row(what: str, value: float, unit: str, how: str, repeats: int = 1, target: Any = "") -> dict:
+    """A row of the table of speed; ``target``: the largest value that is wanted."""
+    return {
+        "what": what,
+        "value": float(f"{value:.4g}"),
+        "unit": unit,
+        "target": f"<= {target}" if target else "",
+        "met": value <= target if target else "",
+        "repeats": repeats,
+        "how": how,
+    }
+
+
+def _factoring(run: Simulation) -> tuple[Callable[[], None], Callable[[], None], np.ndarray]:
+    """Factor, and factor and solve, the tangent of a body as it is; and its coefficients."""
+    body = run.body
+    tangent, force = body.tangent()
+    data, right = tangent.copy(), body.space.to_equations(force)
+    plain = condensation(body.space.pattern, np.zeros(0, dtype=np.int64))
+
+    def factor() -> None:
+        plain.factor(data)
+
+    def factor_and_solve() -> None:
         plain.factor(data)
         plain.forward(right)
 
+    return factor, factor_and_solve, data
+
+
+def newton_iteration(repeats: int = 15) -> Rows:
+    """One Newton iteration of the whole pad beside factorisation and solution of its matrix."""
+    scene = load_scene(SCENES / "ramp40_k210.yaml").varied({"effects": {"symmetry": False}})
+    run = Simulation(scene, plan(scene), None)
+    stepper, steps = run.stepper, list(run.steps())
+    stepper.run(steps[:10])
+    factor, factor_and_solve, data = _factoring(run)
     state = stepper.save()
-    target = steps[10].force
 
-    def iteration():
+    def iteration() -> None:
         stepper.restore(state)
-        stepper.iterate("force", target)
+        stepper.iterate("force", steps[10].force)
 
-    body.begin_step(steps[10].dt)
+    run.body.begin_step(steps[10].dt)
     iteration()
-    ratios, schur = [], []
-    for _ in range(repeats):  # in pairs, so that a busy machine slows both
-        a = seconds(factor_and_solve, 1)[1]
-        ratios.append(seconds(iteration, 1)[1] / a)
-        b = seconds(lambda: plain.factor(data), 1)[1]
-        schur.append(seconds(lambda: stepper.solver.factor(data), 1)[1] / b)
-    nodes = len(body.space.points)
-    how = (
-        f"{nodes} nodes, {body.space.size} unknowns, {len(stepper.zone.nodes)} skin nodes in "
-        "the contact zone"
-    )
-    ratio, schur_ratio = statistics.median(ratios), statistics.median(schur)
-    return [
-        ["Newton iteration / (factor + solve)", ratio, "1", "<= 1.8", ratio <= 1.8, repeats, how],
-        [
+    size = f"{len(run.body.space.points)} nodes, {run.body.space.size} unknowns"
+    size += f", {len(stepper.zone.nodes)} skin nodes in the contact zone"
+    for what, one, other, most in (
+        ("Newton iteration / (factor + solve)", iteration, factor_and_solve, 1.8),
+        (
             "factor with Schur complement / plain factor",
-            schur_ratio,
-            "1",
-            "<= 1.25",
-            schur_ratio <= 1.25,
-            repeats,
-            how,
-        ],
-        ["factor + solve", 1e3 * seconds(factor_and_solve, repeats)[1], "ms", "", "", repeats, how],
-    ]
+            lambda: stepper.solver.factor(data),
+            factor,
+            1.25,
+        ),
+    ):
+        yield row(what, ratio(one, other, repeats), "1", size, repeats, most)
+    once = 1e3 * median(factor_and_solve, repeats)
+    yield row("factor + solve", once, "ms", size, repeats)
 
 
-def ramp_and_hold(repeats: int = 3) -> list[list]:
-    """The nine-shape scenes at figure resolution: broadest, middle and sharpest."""
-    rows = []
-    for name in ("ramp40_flat", "ramp40_k210", "ramp40_k1260"):
+def presses(repeats: int = 3) -> Rows:
+    """Ramps and holds at figure resolution, and what inner ridges cost."""
+    known = {}
+    for name in ("ramp40_flat", "ramp40_k210", "ramp40_k1260", "ridged_40_flat"):
         scene = load_scene(SCENES / f"{name}.yaml")
-        chosen = plan(scene)
+        known[name] = scene, plan(scene)
+    for name, (scene, chosen) in list(known.items())[:3]:
         history = simulate(scene, chosen)
-        _, median, _ = seconds(lambda scene=scene, chosen=chosen: simulate(scene, chosen), repeats)
-        steps, iterations = states_found(history), int(history.newton_iterations.sum())
-        how = (
-            f"{chosen.nodes} nodes (half pad), {steps} steps, {iterations} Newton iterations, "
-            "meshing included"
-        )
-        rows.append([f"ramp and hold, {name}", median, "s", "<= 3", median <= 3, repeats, how])
-    return rows
-
-
-def ridges(repeats: int = 3) -> list[list]:
-    """A ramp and hold on a pad with inner ridges against the plain one: process time a node."""
-    scenes = [load_scene(SCENES / f"{name}.yaml") for name in ("ramp40_flat", "ridged_40_flat")]
-    plans = [plan(scene) for scene in scenes]
-    ratios = []
-    for _ in range(repeats):  # in pairs, so that a busy machine slows both
-        plain, ridged = (
-            seconds(lambda s=s, p=p: simulate(s, p), 1)[1]
-            for s, p in zip(scenes, plans, strict=True)
-        )
-        ratios.append(ridged / plain)
-    nodes = plans[1].nodes / plans[0].nodes
-    ratio = statistics.median(ratios) / nodes
-    how = (
-        f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), "
-        f"{ratio * nodes:.2f} times the process time"
-    )
-    return [
-        [
-            "inner ridges, cost a node over the plain pad's",
-            ratio,
-            "1",
-            "<= 3",
-            ratio <= 3,
-            repeats,
-            how,
-        ]
-    ]
-
-
-def strokes() -> list[list]:
-    """The five full strokes over the wavy surface, one after the other, and a factorisation on its
-    own mesh after each.
-    """
-    scenes = [load_scene(SCENES / f"stroke_{speed}.yaml") for speed in (1, 5, 10, 20, 40)]
-    plans = [plan(scene) for scene in scenes]
-    total, histories, ratios = 0.0, [], []
-    for scene, chosen in zip(scenes, plans, strict=True):
-        start = time.process_time()
-        histories.append(simulate(scene, chosen))
-        total += (spent := time.process_time() - start)
-        plain, data, right = _plain(Simulation(scene, chosen, None).body)
-        ratios.append(spent / seconds(partial(_factor_and_solve, plain, data, right), 5)[1])
-    steps, iterations, cuts = (
-        sum(int(f(h)) for h in histories)
-        for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
-    )
-    outputs = np.diff(histories[0].stroke_distance.values).max() * 1e3
-    nodes = " and ".join(map(str, sorted({chosen.nodes for chosen in plans})))
-    how = (
-        f"{nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every "
-        f"{outputs:.2g} mm"
-    )
-    ratio = statistics.median(ratios)
-    return [
-        ["five full strokes", total, "s", "<= 240", total <= 240, 1, how],
-        [
-            "a full stroke / (factor + solve)",
-            ratio,
-            "1",
-            "<= 500",
-            ratio <= 500,
-            1,
-            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh, "
-            "in double precision",
-        ],
-        [
-            "iterations a step of a stroke",
-            iterations / steps,
-            "1",
-            "<= 3",
-            iterations <= 3 * steps,
-            1,
-            how,
-        ],
-    ]
-
-
-def _factor_and_solve(plain, data, right) -> None:
-    plain.factor(data)
-    plain.forward(right)
-
-
-def _plain(body):
-    """A solver without any condensation, the tangent's coefficients and a right-hand side of a body
-    as it is.
-    """
-    data, force = body.tangent()
-    return (
-        condensation(body.space.pattern, np.zeros(0, dtype=np.int64)),
-        data.copy(),
-        body.space.to_equations(force),
-    )
-
-
-def one_step() -> list[list]:
-    """The whole load in one step: Newton iterations, which no machine changes."""
-    rows = []
-    base = load_scene(SCENES / "ramp40_flat.yaml")
-    for stimulus, label in ((Flat(), "flat"), (Cylinder(curvature=1259.84), "1260 1/m")):
+        how = f"{chosen.nodes} nodes (half pad), {states_found(history)} steps, "
+        how += f"{int(history.newton_iterations.sum())} Newton iterations, meshing included"
+        took = median(lambda made=(scene, chosen): simulate(*made), repeats)
+        yield row(f"ramp and hold, {name}", took, "s", how, repeats, 3)
+    ridged, plain = known["ridged_40_flat"], known["ramp40_flat"]
+    times = ratio(lambda: simulate(*ridged), lambda: simulate(*plain), repeats)
+    how = f"ramp and hold, flat: {plain[1].nodes} and {ridged[1].nodes} nodes (half pad), "
+    how += f"{times:.2f} times the process time"
+    node = times * plain[1].nodes / ridged[1].nodes
+    yield row("inner ridges, cost a node over the plain pad's", node, "1", how, repeats, 3)
+    for label, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
         for nu in (0.48, 0.4999):
-            history = simulate(_steady(base, stimulus, nu))
+            layers = {name: {"poisson_ratio": nu} for name in ("epidermis", "dermis", "fat")}
+            document = {"stimulus": stimulus, "motion": [force(20)], "accuracy": {"steps": 1}}
+            history = simulate(scene_of(document | {"specimen": {"layers": layers}}, label))
             count, cuts = int(history.newton_iterations.sum()), int(history.cutbacks.sum())
             how = f"20 gram-weight, {label}, nu = {nu}, {cuts} cuts"
-            rows.append(
-                [
-                    "full load in one step",
-                    count,
-                    "iterations",
-                    "<= 6",
-                    count <= 6 and not cuts,
-                    1,
-                    how,
-                ]
-            )
-    return rows
+            yield row("full load in one step", count, "iterations", how, target=6)
 
 
-def _steady(base: Scene, stimulus, nu: float) -> Scene:
-    layers = Layers(
-        **{
-            name: Layer(youngs_modulus=layer.youngs_modulus, poisson_ratio=nu)
-            for name, layer in (
-                (name, getattr(base.specimen.layers, name))
-                for name in ("epidermis", "dermis", "fat")
-            )
-        }
-    )
-    return base.varied(
-        {
-            "specimen.layers": layers,
-            "stimulus": stimulus,
-            "motion": (PressToForce(press_to_force=20 * 9.80665e-3, rate=None),),
-            "accuracy": Discretisation(element=None, skin_edge=None, steps=1),
-        }
-    )
+def strokes() -> Rows:
+    """The five full strokes over the wavy surface, and a factorisation on its mesh after each."""
+    total, steps, iterations, cuts, ratios, nodes = 0.0, 0, 0, 0, [], set()
+    for speed in (1, 5, 10, 20, 40):
+        scene = load_scene(SCENES / f"stroke_{speed}.yaml")
+        chosen = plan(scene)
+        start = time.process_time()
+        history = simulate(scene, chosen)
+        spent = time.process_time() - start
+        _, factor_and_solve, _ = _factoring(Simulation(scene, chosen, None))
+        ratios.append(spent / median(factor_and_solve, 5))
+        total += spent
+        steps += states_found(history)
+        iterations += int(history.newton_iterations.sum())
+        cuts += int(history.cutbacks.sum())
+        nodes.add(chosen.nodes)
+    how = f"{' and '.join(map(str, sorted(nodes)))} nodes, {steps} steps, {cuts} cuts, "
+    how += "80 mm each at 1 to 40 mm/s"
+    own = f"; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh"
+    over = float(np.median(ratios))
+    yield row("five full strokes", total, "s", how, target=240)
+    yield row("a full stroke / (factor + solve)", over, "1", how + own, target=500)
+    yield row("iterations a step of a stroke", iterations / steps, "1", how, target=3)
 
 
-def overhead(repeats: int = 5) -> list[list]:
-    """What a simulation process costs before it simulates: start, imports, scene, plan, compiled
-    kernels.
-    """
-    code = (
-        "import fingerpad, fingerpad.results, fingerpad.simulation as s;"
-        f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); s.Simulation(scene, "
-        "fingerpad.plan(scene), None)"
-    )
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True)
-        times.append(time.perf_counter() - start)
-    median = statistics.median(times)
-    how = "wall time of a process that imports, plans, meshes and builds the model of ramp40_flat"
-    return [["process overhead per job", median, "s", "<= 1.5", median <= 1.5, repeats, how]]
-
-
-def tactile_sensor(frames: int = 20_000, repeats: int = 5) -> list[list]:
-    """Impulse rates from contact pressure, Eqs 4-4 and 5-1: a sample of one receptor, frame by
-    frame and as a whole recording.
-    """
-    x = np.linspace(-4e-3, 4e-3, 113)
-    time, pressure = (
-        np.arange(frames) * 1e-3,
-        1e4 * np.random.default_rng(0).random((frames, len(x))),
-    )
-    sensor = TactileSensor(x, SpatialSum(r=0.475e-3, per_depth=3.38e4, constant=9.85))
-
-    def step_by_step():
-        sensor.reset()
-        for t, frame in zip(time, pressure, strict=True):
-            sensor.step(t, frame, 1e-3)
-
-    rows = []
-    for way, call in (
-        ("step by step", step_by_step),
-        ("whole recording", lambda: sensor.rates(time, pressure, 1e-3)),
-    ):
-        median = 1e6 * seconds(call, repeats)[1] / frames
-        rows.append(
-            [
-                f"tactile sensor, {way}",
-                median,
-                "us per sample",
-                "",
-                "",
-                repeats,
-                f"{len(x)} pressures, {frames} frames",
-            ]
-        )
-    return rows
-
-
-def workflow() -> list[list]:
-    """The whole default target from nothing, on two cores (results are made again)."""
-    command = [str(Path(sys.executable).parent / "snakemake")]
+def wall(command: list[str]) -> float:
+    """Wall time (s) of a process."""
     start = time.perf_counter()
-    subprocess.run([*command, "--forceall", "--cores", "2", "--quiet"], check=True, cwd=ROOT)
-    wall = time.perf_counter() - start
-    return [
-        ["make figures, after set-up", wall, "s", "", "", 1, "wall time, 2 cores, every job rerun"]
+    subprocess.run(command, check=True, cwd=SCENES.parents[1], capture_output=True)
+    return time.perf_counter() - start
+
+
+def overhead(repeats: int = 5) -> Rows:
+    """What a simulation process costs before it simulates."""
+    code = "import fingerpad, fingerpad.simulation as s; "
+    code += f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); "
+    code += "s.Simulation(scene, fingerpad.plan(scene), None)"
+    took = float(np.median([wall([sys.executable, "-c", code]) for _ in range(repeats)]))
+    how = "wall time of a process that imports, plans, meshes and builds the model of ramp40_flat"
+    yield row("process overhead per job", took, "s", how, repeats, 1.5)
+
+
+# -- sweeps ---
+
+PRESS, HELD, SMALL = "steady press, finite strain", "ramp and hold", "steady press, small strain"
+KINDS = {
+    PRESS: {"motion": [force(20)]},
+    HELD: {"motion": RAMP},
+    SMALL: {"motion": [force(20)], "effects": {"finite_strain": "off"}},
+}
+
+
+def sweep_of(kind: str, scenes: int) -> dict[str, Any]:
+    """A sweep over the curvature of a scene at draft."""
+    curvatures = {"range": ["80 1/m", "800 1/m"], "count": scenes, "spacing": "logarithmic"}
+    scene = {"stimulus": cylinder(210)} | KINDS[kind]
+    return {"scene": scene, "over": {"stimulus.curvature": curvatures}, "accuracy": "draft"}
+
+
+def of_command(kind: str, scenes: int, cores: int, repeats: int = 3) -> Rows:
+    """``fingerpad sweep`` on so many cores: walls, process time a scene, memory of its records."""
+    with tempfile.TemporaryDirectory() as name:
+        file, out = Path(name, "sweep.yaml"), Path(name)
+        file.write_text(json.dumps(sweep_of(kind, scenes)))
+        command = [str(COMMANDS / "fingerpad"), "sweep", str(file), "--cores", str(cores), "--out"]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        walls = [wall([*command, str(out / str(k))]) for k in range(repeats)]
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        batches = [list(read_records(path)) for path in sorted(out.glob("0/**/*.jsonl"))]
+    whole = f"{kind}, the command on {cores} core{'s' * (cores > 1)}"
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    took = f"wall time, median of {repeats}" if repeats > 1 else "wall time"
+    middle = float(np.median(walls))
+    rows = [(whole, took, middle, "s"), (whole, "scenes a second", scenes / middle, "1/s")]
+    if repeats > 1:
+        spread = "spread of the walls over their median"
+        rows.append((whole, spread, np.ptp(walls) / middle, "1"))
+    alone = np.mean([record["cpu_s"] for batch in batches for record in batch[1:]])
+    rows.append((kind, "process time a scene, all included", cpu / scenes / repeats, "s"))
+    rows.append((kind, "process time a scene, simulation alone", alone, "s"))
+    memory = [np.array([record["memory_MB"] for record in batch]) for batch in batches]
+    start = min(100, len(memory[0]) // 2)
+    growth = max(float(batch[start:].max() / batch[start]) for batch in memory)
+    rows.append((kind, "largest memory", max(batch.max() for batch in memory), "MB"))
+    rows.append((kind, f"largest memory after scene {start} over memory then", growth, "1"))
+    yield from _rows(scenes, rows)
+
+
+def of_laying_out(scenes: int) -> Rows:
+    """Checking, planning and dividing: process time a scene, and files."""
+    with tempfile.TemporaryDirectory() as name:
+        read, start = load_sweep(sweep_of(PRESS, scenes), "bench"), time.process_time()
+        layout = lay_out(read, Path(name), 2)
+        cpu = time.process_time() - start
+        files = sum(path.is_file() for path in Path(name).rglob("*"))
+    rows = [("process time a scene", cpu / scenes, "s"), ("batches", len(layout.batches), "count")]
+    yield from _rows(scenes, [("laying out", *each) for each in (*rows, ("files", files, "count"))])
+
+
+COLLECT = """
+import json, resource, sys
+from pathlib import Path
+from fingerpad.sweeps.collect import collect
+folder = Path(sys.argv[1])
+design = json.loads((folder / "design.json").read_text())
+collect(design, [folder / "all.jsonl"], folder / "a.nc", folder / "a.csv")
+used = resource.getrusage(resource.RUSAGE_SELF)
+print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+"""
+
+
+def of_collecting(scenes: int, measures: int = 30) -> Rows:
+    """Dataset and table of made-up records: process time, memory, size."""
+    keys = [f"{n:020d}" for n in range(scenes)]
+    parameter = {"name": "k", "key": "k", "unit": "mm", "dimension": "k", "source": ""}
+    parameter["values"] = list(range(scenes))
+    design = {"dimensions": {"k": scenes}, "parameters": [parameter], "keys": keys, "about": {}}
+    values = np.random.default_rng(1).random((scenes, measures)).round(6).tolist()
+    with tempfile.TemporaryDirectory() as name:
+        Path(name, "design.json").write_text(json.dumps(design))
+        with Path(name, "all.jsonl").open("w") as file:
+            for n, numbers in enumerate(values):
+                found = [[f"measure_{k}", "end", "mm", x] for k, x in enumerate(numbers)]
+                record = {"key": keys[n], "number": n, "diagnosis": "", "nodes": 1}
+                file.write(json.dumps(record | {"measures": found}) + "\n")
+        command = [sys.executable, "-c", COLLECT, name]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        size = Path(name, "a.nc").stat().st_size / 1e6
+    cpu, peak = map(float, done.stdout.split())
+    rows = [("process time", cpu, "s"), ("largest memory", peak, "MB"), ("dataset", size, "MB")]
+    yield from _rows(scenes, [(f"collecting {measures} measures", *each) for each in rows])
+
+
+def _rows(scenes: int, rows: list[tuple[str, str, float, str]]) -> Rows:
+    for what, quantity, value, unit in rows:
+        print(f"{what}, {scenes} scenes: {quantity} {value:.4g} {unit}", flush=True)
+        number = {"what": what, "scenes": scenes, "quantity": quantity}
+        yield number | {"value": float(value), "unit": unit}
+
+
+def sweeps(most: int = 1000) -> pd.DataFrame:
+    """What sweeps cost, by number of scenes."""
+    sizes = most // 10, most, 10 * most
+    rows = [
+        each for measured in (of_collecting, of_laying_out) for n in sizes for each in measured(n)
     ]
+    one, two = (list(of_command(PRESS, most, cores)) for cores in (1, 2))
+    rows += one + two
+    gain = one[0]["value"] / two[0]["value"]
+    what = "scenes on two cores over scenes on one"
+    rows += _rows(most, [(f"{PRESS}, the command", what, gain, "1")])
+    rows += of_command(HELD, most // 10, 1, 1)
+    rows += of_command(SMALL, most, 2, 1)
+    return pd.DataFrame(rows)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--workflow", action="store_true", help="also time the default workflow target from nothing"
-    )
-    parser.add_argument("--out", type=Path, default=ROOT / "figures" / "tables" / "speed.csv")
-    options = parser.parse_args()
+def speed() -> pd.DataFrame:
+    """What presses, strokes and their parts cost, and the machine."""
     with threadpool_limits(1):
-        rows = [
-            *newton_iteration(),
-            *ramp_and_hold(),
-            *ridges(),
-            *strokes(),
-            *one_step(),
-            *tactile_sensor(),
-        ]
-    rows += overhead()
-    if options.workflow:
-        rows += workflow()
-    table = pd.DataFrame(rows, columns=COLUMNS)
-    table["value"] = [float(f"{value:.4g}") for value in table["value"]]
+        table = pd.DataFrame([*newton_iteration(), *presses(), *strokes(), *overhead()])
     made_by = provenance()
-    machine = (
-        f"{made_by['processor']}, {os.cpu_count()} cores, 1 thread, python {made_by['python']}, "
-        + ", ".join(f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl"))
-    )
-    table["machine"] = machine
-    print(table.drop(columns="machine").to_markdown(index=False))
-    print(machine)
-    write_atomically(options.out, lambda path: table.to_csv(path, index=False))
-    text = (
-        f"{table.drop(columns='machine').to_markdown(index=False)}\n\nMedians, process time "
-        f"unless wall is said; {machine}.\n"
-    )
-    write_atomically(
-        options.out.with_suffix(".md"), lambda path: path.write_text(text, encoding="utf-8")
-    )
+    known = [made_by["processor"], f"{os.cpu_count()} cores, 1 thread, python {made_by['python']}"]
+    known += [f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl")]
+    table["machine"] = ", ".join(known)
+    table.attrs["columns"] = list(table.columns[:-1])
+    return table
 
 
 if __name__ == "__main__":
-    main()
+    name = (sys.argv[1:] or ["speed"])[0]
+    publish_table({"speed": speed, "sweeps": sweeps}[name](), TABLES / f"{name}.csv")

@@ -11,8 +11,7 @@ import pandas as pd
 
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.publishing.write import publish_table
-from fingerpad import load_scene, plan
-from fingerpad import simulate as run
+from fingerpad import load_scene, plan, simulation
 from fingerpad.files import write_atomically, write_text
 from fingerpad.planning.plan import companion
 from fingerpad.results import FIELDS, summary, write_history
@@ -44,7 +43,7 @@ def simulate(job: SimpleNamespace) -> None:
             else:
                 write_atomically(file, lambda p, content=content: p.write_bytes(content))
             if how.outputs not in solved:
-                solved[how.outputs] = run(scene, how, mesh=mesh)
+                solved[how.outputs] = simulation.simulate(scene, how, mesh=mesh)
             result = solved[how.outputs]
             write_text(file.with_name("summary.json"), json.dumps(summary(result), indent=2) + "\n")
             write_history(result, history)
@@ -55,10 +54,9 @@ def simulate_fields(job: SimpleNamespace) -> None:
     """`scenes` -> `histories` with the whole field of strain energy at the snapshots of each."""
     for path, history in zip(job.scenes, job.histories, strict=True):
         scene = load_scene(path)
-        result = run(scene, fields=bool(scene.outputs.snapshots))
+        result = simulation.simulate(scene, fields=bool(scene.outputs.snapshots))
         others = [f"snapshot_{name}" for name in FIELDS if name != "strain_energy_density"]
-        result = result.drop_vars(others, errors="ignore")
-        write_history(result, history)
+        write_history(result.drop_vars(others, errors="ignore"), history)
         print(history, result.attrs["cost"], flush=True)
 
 

@@ -143,13 +143,15 @@ class Space:
     def pressure_modes(self, elements: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Orthonormal pressure modes (n, nm) of ``elements`` (n,) at physical ``points`` (n, 2).
 
-        Raises:
-            ValueError: the element's pressure is pointwise and has no value between its quadrature
-            points.
+        A pointwise pressure has at a point the value of the nearest quadrature point.
         """
         count = self.element.pressure_modes
         if count not in (1, 3):
-            raise ValueError(f"{self.element.name} has no pressure field")
+            corners = self.points[self.cells[elements]]
+            places = np.einsum("qa,nai->nqi", self.element.values, corners)
+            nearest = np.sum((places - points[:, None]) ** 2, axis=2).argmin(1)
+            own = np.arange(count) == nearest[:, None]
+            return np.where(own, self.psi[elements, nearest], 0.0)
         local = (points - self.centres[elements]) / self._span[elements][:, None]
         raw = np.column_stack([np.ones(len(points)), local])[:, :count]
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])

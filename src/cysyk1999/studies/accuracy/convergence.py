@@ -7,7 +7,7 @@ Sources: L. F. Richardson, Phil. Trans. R. Soc. A 210, 307 (1911); P. J. Roache,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -20,15 +20,14 @@ LOWEST, HIGHEST = 1.0, 2.0
 """Orders between which differences are extrapolated; what is seen outside is not believed."""
 
 
-@dataclass(frozen=True)
-class Limit:
-    """The value at size zero, how uncertain (of the same unit), and the order seen on the three
-    finest sizes (nan: none).
+class Limit(NamedTuple):
+    """The value at size zero, its uncertainty in the same unit, and the order seen on the three
+    finest sizes (nan: none); numbers, or an array of each.
     """
 
-    value: float
-    uncertainty: float
-    order: float
+    value: float | np.ndarray
+    uncertainty: float | np.ndarray
+    order: float | np.ndarray
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
@@ -77,3 +76,8 @@ def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
     correction = (last[2] - last[1]) / ((middle / fine) ** np.clip(order, LOWEST, HIGHEST) - 1)
     safety = SAFETY if order <= 1.1 * HIGHEST else SAFETY_UNOBSERVED
     return Limit(float(last[2] + correction), float(safety * abs(correction)), order)
+
+
+def limits(sizes: Sequence[float], series: np.ndarray) -> Limit:
+    """The limits (moments,) of a series (sizes, moments)."""
+    return Limit(*np.transpose([limit(sizes, column) for column in series.T]))

@@ -1,10 +1,10 @@
-"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with
-other smoothing and meshes.
+"""Does the edge of the contact move continuously? Kinks in the curves of a ramp and hold.
 
-Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points
-inside elements (:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its
-pressures are smoothed enough to be those of one edge and not so much that the contact widens. How
-far the pressures across the contact are off is a matter of the nodes along the skin alone.
+Contact that begins node by node leaves a kink in every curve when a node joins. Contact at points
+inside elements (:mod:`fingerpad.mechanics.contact_points`) leaves none that can be seen, if its
+pressures are smoothed: too little, and they alternate; too much, and the contact widens. The study
+varies the smoothing and the mesh. How wrong the pressures across the contact are depends on the
+nodes along the skin alone.
 """
 
 from __future__ import annotations
@@ -14,25 +14,22 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cysyk1999.measures.errors import norm
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.accuracy.run import DEPTHS, EDGED
+from cysyk1999.studies.accuracy.compare import DEPTHS, looked_at
+from cysyk1999.studies.accuracy.run import EDGED
 from fingerpad import load_scene
 from fingerpad.mechanics import contact_points
 from fingerpad.planning.plan import plan
 from fingerpad.receptors.laws import rate_by_leg
+from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from fingerpad.scenes.scene import Scene
-    from fingerpad.specimen.pad import MeshSize
+from fingerpad.specimen.pad import MeshSize
 
 OUTPUTS = 40
 """Of the ramp, and as many of the hold."""
@@ -86,10 +83,8 @@ def kinks(history: xr.Dataset) -> dict[str, float]:
     found = {}
     for name, (when, values) in curves.items():
         corner = int(np.argmin(np.abs(when - top)))
-        again = (
-            corner + 1 if np.isclose(when[min(corner + 1, len(when) - 1)], top) else corner
-        )  # a rate has two values there
-        legs = (slice(ONSET, corner + 1), slice(again, None))
+        twice = np.isclose(when[min(corner + 1, len(when) - 1)], top)  # a rate has two values there
+        legs = slice(ONSET, corner + 1), slice(corner + int(twice), None)
         found[name] = max(kink(when[part], values[part]) for part in legs) / float(np.ptp(values))
     return found
 
@@ -110,35 +105,23 @@ def pressed(
     """The history of a ramp and hold with outputs that are close enough to see kinks, a state at
     each, for splines between states would hide some; on its own mesh or one of another size.
     """
-    from fingerpad.scenes.scene import Receptors
-
-    receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
-    made = scene.with_accuracy("thesis").varied(
-        {"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS}
-    )
-    chosen = plan(made)
+    asked = looked_at(scene).with_accuracy("thesis").varied({"outputs.per_leg": OUTPUTS})
+    chosen = plan(asked)
     with smoothed(share):
         return simulate(
-            made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1)
+            asked, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1)
         )
 
 
-def everywhere(size: MeshSize) -> MeshSize:
-    """No finer in the contact than around it."""
-    return replace(size, focus=(), skin_radial_edge=None)
-
-
-def into_the_skin(size: MeshSize) -> MeshSize:
-    """As fine into the skin as along it."""
-    return replace(
-        size, skin_radial_edge=min((edge for _, edge in size.focus), default=size.skin_edge)
-    )
+def _as_fine_into_the_skin(size: MeshSize) -> MeshSize:
+    edge = min((edge for _, edge in size.focus), default=size.skin_edge)
+    return replace(size, skin_radial_edge=edge)
 
 
 MESHES = {
     "own": lambda size: size,
-    "not refined": everywhere,
-    "refined into the skin too": into_the_skin,
+    "not refined": lambda size: replace(size, focus=(), skin_radial_edge=None),
+    "refined into the skin too": _as_fine_into_the_skin,
 }
 """Meshes of a surface; of one that is not refined the first two are one."""
 FINER = 1 / 3
@@ -168,10 +151,8 @@ def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
     """
     out, own = [], None
     truth = pressed(scene, sized=lambda size: size.coarser(FINER))
-    for mesh, share in (
-        *(("own", share) for share in SHARES),
-        *((mesh, 1.0) for mesh in list(MESHES)[1:]),
-    ):
+    ways = [("own", share) for share in SHARES] + [(mesh, 1.0) for mesh in list(MESHES)[1:]]
+    for mesh, share in ways:
         history = pressed(scene, share, MESHES[mesh])
         own = history if own is None else own
         row = {"surface": surface, "mesh": mesh, "smoothing (of the method's)": share}

@@ -1,5 +1,5 @@
-"""Runs of the study of accuracy -> reference, errors, costs: what its tables and figures show and
-what the planner goes by.
+"""Records of the study of accuracy -> reference values, errors and costs: its tables and the data
+of its figures, and the errors that the planner uses.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.accuracy.convergence import Limit, fitted_order, limit
+from cysyk1999.studies.accuracy.compare import DEPTHS
+from cysyk1999.studies.accuracy.convergence import Limit, fitted_order, limits
 from cysyk1999.studies.accuracy.run import (
     DEFAULT_ROWS,
     DEFAULT_STEPS,
-    DEPTHS,
     ELEMENTS,
     FAMILY,
     PRESSED,
@@ -32,6 +32,7 @@ from cysyk1999.studies.accuracy.run import (
 )
 from fingerpad import load_scene
 from fingerpad.reference_solutions import hertz, phillips_johnson, waterbed
+from fingerpad.scenes.scene import Scene
 
 Records = Mapping[str, dict[str, Any]]
 
@@ -41,35 +42,29 @@ them.
 """
 QUANTITIES = (*HEADLINE, "peak energy rate")
 HALF_PLANE, WATER_BED = "elastic half-plane", "water bed"
-FINITE_ELEMENTS = "finite elements"
+FINITE_ELEMENTS, UNCERTAINTY = "finite elements", "uncertainty of the reference"
 FINE_ROWS = ROWS[-2]
 """Rows of the mesh that is like that of the preset fine, which has twice the default's steps."""
 
 
-def _series(records: Records, points: Iterable[Point], quantity: str) -> np.ndarray:
-    """(points, moments) values of a quantity; nan for a run that failed."""
-    found = [records[point.name]["values"].get(quantity) for point in points]
+def series(records: Records, points: Iterable[Point], quantity: str) -> np.ndarray:
+    """(points, moments) values of a quantity; nan for a run that failed or was not made."""
+    found = [records.get(point.name, {}).get("values", {}).get(quantity) for point in points]
     moments = max(len(values) for values in found if values)
     return np.array([values or [np.nan] * moments for values in found])
 
 
-def _limits(sizes, series) -> list[Limit]:
-    return [limit(sizes, column) for column in series.T]
-
-
-def mesh_limits(records: Records, family: str, quantity: str) -> list[Limit]:
-    """Limit in the mesh size of the default element, at the default's time steps, a moment each."""
+def mesh_limits(records: Records, family: str, quantity: str) -> Limit:
+    """Limit (moments,) in the mesh size of the default element, at the default's time steps."""
     rows = [rows for rows in ROWS if Point(family, rows=rows).name in records]
-    return _limits(
-        1 / np.array(rows), _series(records, [Point(family, rows=n) for n in rows], quantity)
-    )
+    points = [Point(family, rows=n) for n in rows]
+    return limits(1 / np.array(rows), series(records, points, quantity))
 
 
-def step_limits(records: Records, family: str, quantity: str) -> list[Limit]:
-    """Limit in the step size on the default's mesh, a moment each."""
-    return _limits(
-        1 / np.array(STEPS), _series(records, [Point(family, steps=n) for n in STEPS], quantity)
-    )
+def step_limits(records: Records, family: str, quantity: str) -> Limit:
+    """Limit (moments,) in the step size on the default's mesh."""
+    points = [Point(family, steps=n) for n in STEPS]
+    return limits(1 / np.array(STEPS), series(records, points, quantity))
 
 
 def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
@@ -78,11 +73,14 @@ def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
 
     Where friction keeps what steps have left behind, they do not simply add.
     """
-
-    def at(**changes):
-        return np.array(records[Point(family, **changes).name]["values"][quantity])
-
-    return np.abs(at(preset="fine") - at(rows=FINE_ROWS) - at(steps=2 * DEFAULT_STEPS) + at())
+    points = (
+        Point(family, preset="fine"),
+        Point(family, rows=FINE_ROWS),
+        Point(family, steps=2 * DEFAULT_STEPS),
+        Point(family),
+    )
+    fine, mesh, steps, default = series(records, points, quantity)
+    return np.abs(fine - mesh - steps + default)
 
 
 def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -93,86 +91,74 @@ def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.
     """
     found = {}
     for quantity in QUANTITIES:
-        default = np.array(records[Point(family).name]["values"][quantity])
-        mesh, steps = mesh_limits(records, family, quantity), step_limits(records, family, quantity)
-        value = np.array([m.value + s.value for m, s in zip(mesh, steps, strict=True)]) - default
-        uncertainty = np.array(
-            [m.uncertainty + s.uncertainty for m, s in zip(mesh, steps, strict=True)]
-        )
-        found[quantity] = value, uncertainty + interplay(records, family, quantity)
+        mesh, steps = (of(records, family, quantity) for of in (mesh_limits, step_limits))
+        value = mesh.value + steps.value - series(records, [Point(family)], quantity)[0]
+        unsure = mesh.uncertainty + steps.uncertainty + interplay(records, family, quantity)
+        found[quantity] = value, unsure
     return found
 
 
 def errors(values: Mapping[str, list[float]], reference) -> dict[str, float]:
-    """Quantity -> largest relative error of its moments; nan where there is no value."""
+    """Columns of a table: the largest relative error (%) of each quantity at its moments, and of
+    the headline; nan where there is no value.
+    """
     found = {}
     for quantity in QUANTITIES:
-        value, (converged, _) = np.array(values.get(quantity) or [np.nan]), reference[quantity]
-        off = np.abs(value - converged[-len(value) :]) / np.abs(converged[-len(value) :])
-        found[quantity] = float(np.nanmax(off)) if np.isfinite(off).any() else np.nan
-    return found
+        value = np.array(values.get(quantity) or [np.nan])
+        converged = reference[quantity][0][-len(value) :]
+        off = np.abs(value - converged) / np.abs(converged)
+        found[quantity] = 100 * float(np.nanmax(off)) if np.isfinite(off).any() else np.nan
+    largest = np.fmax.reduce([found[quantity] for quantity in HEADLINE])
+    return {"error (%)": largest} | {f"{q} (%)": error for q, error in found.items()}
 
 
-def accuracy_table(records: Records, scenes: Mapping[str, Any]) -> pd.DataFrame:
+def accuracy_table(records: Records, scenes: Mapping[str, Scene]) -> pd.DataFrame:
     """Every point, the historical models and the references: errors (%), cost (s, MB, unknowns,
     iterations).
 
-    Args:
-        records: by name. scenes: family -> its scene, whose specimen the historical models take
-        their measures from.
+    Parameters
+    ----------
+    records : mapping
+        Records by name.
+    scenes : mapping
+        Family -> its scene, of which the historical models take their measures.
     """
     yardstick = statistics.median(
         s for record in records.values() for s in record["cost"]["yardstick_s"]
     )
     rows = []
     for family in FAMILY:
-        known = {
-            name: record for name, record in records.items() if record["point"]["family"] == family
-        }
+        known = [each for each in records.values() if each["point"]["family"] == family]
         if not known:
             continue
-        reference, default = (
-            references(records, family),
-            seconds(records[Point(family).name], yardstick),
-        )
-        for record in known.values():
-            rows.append(_row(record, reference, seconds(record, yardstick), default))
+        reference = references(records, family)
+        default = seconds(records[Point(family).name], yardstick)
+        rows += [_row(record, reference, seconds(record, yardstick), default) for record in known]
         if family in PRESSED:
             width = float(references(records, "flat")["width"][0][-1])
-            for name, (_, fit) in MODELS.items():
-                rows.append(
-                    _historical(
-                        name, fit(scenes["flat"], width), family, scenes[family], reference, default
-                    )
-                )
-        uncertain = {
-            f"{q} (%)": 100 * float(np.max(u / np.abs(v))) for q, (v, u) in reference.items()
-        }
-        rows.append({"scene": family, "model": "uncertainty of the reference"} | uncertain)
-    table = pd.DataFrame(rows)
-    table["machine"] = "; ".join(
-        sorted({_machine(record["made_by"]) for record in records.values()})
-    )
-    return table
+            rows += _historical(scenes, family, width, reference, default)
+        uncertain = {f"{q} (%)": 100 * _worst(u, v) for q, (v, u) in reference.items()}
+        rows.append({"scene": family, "model": UNCERTAINTY} | uncertain)
+    machines = {_machine(record["made_by"]) for record in records.values()}
+    return pd.DataFrame(rows).assign(machine="; ".join(sorted(machines)))
+
+
+def _worst(off: np.ndarray, value: np.ndarray) -> float:
+    return float(np.max(np.abs(off / value)))
 
 
 def _machine(made_by: Mapping[str, Any]) -> str:
-    versions = {"python": made_by["python"]} | {
-        name: made_by["packages"][name] for name in ("numpy", "numba", "mkl", "gmsh")
-    }
-    return ", ".join(
-        [made_by["processor"], *(f"{name} {version}" for name, version in versions.items())]
-    )
+    packages = [f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl", "gmsh")]
+    return ", ".join([made_by["processor"], f"python {made_by['python']}", *packages])
 
 
-def _row(record, reference, cpu, default) -> dict[str, Any]:
+def _row(record, reference, cpu: float, default: float) -> dict[str, Any]:
     point, cost = record["point"], record["cost"]
-    off = errors(record["values"], reference)
+    standard = record["name"] == Point(point["family"]).name
     return {
         "scene": point["family"],
         "model": FINITE_ELEMENTS,
-        "preset": point["preset"]
-        or ("thesis" if record["name"] == Point(point["family"]).name else ""),
+        "preset": point["preset"] or ("thesis" if standard else ""),
         "element": point["element"],
         "rows": "" if point["preset"] else point["rows"],
         "strain": "finite" if point["finite"] else "small",
@@ -188,33 +174,37 @@ def _row(record, reference, cpu, default) -> dict[str, Any]:
         "cost (1 = default)": cpu / default,
         "repeats": len(cost["cpu_s"]),
         "load": record["load"],
-        "error (%)": 100 * max(off[q] for q in HEADLINE),
-        **{f"{q} (%)": 100 * off[q] for q in QUANTITIES},
+        **errors(record["values"], reference),
         "failure": record["failure"],
     }
 
 
-# -- the historical models ----------------------------------------------------------------------------------------------
+# -- the historical models ---
 
 
-def half_plane_modulus(scene, width: float) -> float:
+def _force(scene: Scene) -> float:
+    """Force (N/m) of a scene's press."""
+    return scene.motion[0].press_to_force / scene.specimen.contact_length
+
+
+def half_plane_modulus(scene: Scene, width: float) -> float:
     """Young's modulus (Pa) with which a half-plane has the contact ``width`` (m) under the plate at
     the end of the hold.
     """
-    specimen = scene.specimen
-    force = scene.motion[0].press_to_force / specimen.contact_length
-    poisson = specimen.layers.dermis.poisson_ratio
-    return 4 * force * specimen.outline.apex_radius / (np.pi * (width / 2) ** 2) * (1 - poisson**2)
+    radius, poisson = (
+        scene.specimen.outline.apex_radius,
+        scene.specimen.layers.dermis.poisson_ratio,
+    )
+    return 4 * _force(scene) * radius / (np.pi * (width / 2) ** 2) * (1 - poisson**2)
 
 
-def half_plane(scene, curvature: float, modulus: float) -> dict[str, float]:
+def half_plane(scene: Scene, modulus: float) -> dict[str, float]:
     """What the elastic half-plane of ``modulus`` (Pa) answers at the end of the hold."""
     specimen = scene.specimen
     outline, poisson = specimen.outline, specimen.layers.dermis.poisson_ratio
-    force = scene.motion[0].press_to_force / specimen.contact_length
-    radius = 1 / (1 / outline.apex_radius + curvature)
+    radius = 1 / (1 / outline.apex_radius + _curvature(scene))
     depth, half_width, peak = phillips_johnson.press(
-        force, radius, modulus, poisson, outline.soft_thickness
+        _force(scene), radius, modulus, poisson, outline.soft_thickness
     )
     edges = half_width * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
     pressures = hertz.pressure((edges[1:] + edges[:-1]) / 2, half_width, peak)
@@ -223,61 +213,51 @@ def half_plane(scene, curvature: float, modulus: float) -> dict[str, float]:
     # as the headline's: the relaxed stress on instantaneous moduli
     instantaneous = shear / (1 - sum(term.g for term in specimen.prony))
     energies = phillips_johnson.strain_energy_density(*stress, instantaneous, bulk, poisson)
-    found = {
-        "depth": depth,
-        "width": 2 * half_width,
-        "centre pressure": peak,
-        "peak pressure": peak,
-    }
-    return found | {
-        f"energy {z * 1e6:.0f} um": float(e) for z, e in zip(DEPTHS, energies, strict=True)
-    }
+    found = {"depth": depth, "width": 2 * half_width}
+    found |= dict.fromkeys(("centre pressure", "peak pressure"), peak)
+    return found | {f"energy {1e6 * z:.0f} um": e for z, e in zip(DEPTHS, energies, strict=True)}
 
 
-def water_bed_tension(scene, width: float) -> float:
+def water_bed_tension(scene: Scene, width: float) -> float:
     """Tension (N/m) with which a water bed has the contact ``width`` (m) under the plate at the end
     of the hold.
     """
-    force = scene.motion[0].press_to_force / scene.specimen.contact_length
-
-    def excess(log):
-        return water_bed(scene, 0.0, np.exp(log))["width"] - width
-
-    return float(np.exp(brentq(excess, np.log(0.3 * force), np.log(100 * force), xtol=1e-6)))
+    bounds = np.log([0.3 * _force(scene), 100 * _force(scene)])
+    log = brentq(lambda log: water_bed(scene, np.exp(log))["width"] - width, *bounds, xtol=1e-6)
+    return float(np.exp(log))
 
 
-def water_bed(scene, curvature: float, tension: float) -> dict[str, float]:
+def water_bed(scene: Scene, tension: float) -> dict[str, float]:
     """What the water bed of ``tension`` (N/m) answers at the end of the hold."""
     outline = scene.specimen.outline
-    force = scene.motion[0].press_to_force / scene.specimen.contact_length
-    half_width = min(
-        outline.half_width, 0.999 * outline.apex_radius
-    )  # a pad wider than the circle at its apex is half of it
-    state = waterbed.press(force, tension, outline.apex_radius, half_width, curvature)
-    pressures = dict.fromkeys(("centre pressure", "peak pressure"), state.pressure)
-    return {"depth": state.depth, "width": 2 * state.half_width} | pressures
+    radius = outline.apex_radius
+    # a pad wider than the circle at its apex is half of it
+    half_width = min(outline.half_width, 0.999 * radius)
+    state = waterbed.press(_force(scene), tension, radius, half_width, _curvature(scene))
+    found = {"depth": state.depth, "width": 2 * state.half_width}
+    return found | dict.fromkeys(("centre pressure", "peak pressure"), state.pressure)
+
+
+def _curvature(scene: Scene) -> float:
+    return getattr(scene.stimulus, "curvature", 0.0)
 
 
 MODELS = {HALF_PLANE: (half_plane, half_plane_modulus), WATER_BED: (water_bed, water_bed_tension)}
 """Name -> the model, and its constant from the width of the contact with the plate."""
 
 
-def _historical(name, constant, family, scene, reference, default) -> dict[str, Any]:
-    model = MODELS[name][0]
-    args = scene, getattr(scene.stimulus, "curvature", 0.0), constant
-    off = errors({quantity: [value] for quantity, value in model(*args).items()}, reference)
-    cpu = min(timeit.repeat(lambda: model(*args), number=1, repeat=5))
-    return {
-        "scene": family,
-        "model": name,
-        "process time (s)": cpu,
-        "cost (1 = default)": cpu / default,
-        "error (%)": 100 * np.nanmax([off[q] for q in HEADLINE]),
-        **{f"{q} (%)": 100 * off[q] for q in QUANTITIES},
-    }
+def _historical(scenes, family, width: float, reference, default: float) -> list[dict[str, Any]]:
+    rows, scene = [], scenes[family]
+    for name, (model, fit) in MODELS.items():
+        constant = fit(scenes["flat"], width)
+        found = {quantity: [value] for quantity, value in model(scene, constant).items()}
+        cpu = min(timeit.repeat(lambda: model(scene, constant), number=1, repeat=5))  # noqa: B023
+        row = {"scene": family, "model": name, "process time (s)": cpu}
+        rows.append(row | {"cost (1 = default)": cpu / default} | errors(found, reference))
+    return rows
 
 
-# -- what follows from the errors -----------------------------------------------------------------------------------------
+# -- what follows from the errors ---
 
 
 def orders_table(records: Records) -> pd.DataFrame:
@@ -288,36 +268,26 @@ def orders_table(records: Records) -> pd.DataFrame:
     for family in FAMILY:
         if Point(family).name not in records:
             continue
-        sweeps = {element: [Point(family, element, rows) for rows in ROWS] for element in ELEMENTS}
-        sweeps["time steps"] = [Point(family, steps=n) for n in STEPS]
-        for name, sweep in sweeps.items():
-            sweep = [p for p in sweep if records.get(p.name, {}).get("values")]
-            if len(sweep) < 3:
+        sweeps = [
+            ("mesh", element, mesh_limits, [Point(family, element, rows) for rows in ROWS])
+            for element in ELEMENTS
+        ]
+        sweeps.append(("steps", "Q2P1", step_limits, [Point(family, steps=n) for n in STEPS]))
+        for refined, element, of, points in sweeps:
+            points = [point for point in points if records.get(point.name, {}).get("values")]
+            if len(points) < 3:
                 continue
-            sizes = np.array([1 / p.steps if name == "time steps" else 1 / p.rows for p in sweep])
+            counts = [point.steps if refined == "steps" else point.rows for point in points]
+            sizes = 1 / np.array(counts)
             for quantity in QUANTITIES:
-                series = _series(records, sweep, quantity)
-                known = (step_limits if name == "time steps" else mesh_limits)(
-                    records, family, quantity
-                )
-                own = _limits(sizes, series)
-                worst = max(
-                    each.uncertainty / abs(column[-1])
-                    for each, column in zip(own, series.T, strict=True)
-                )
-                rows.append(
-                    {
-                        "scene": family,
-                        "refined": "steps" if name == "time steps" else "mesh",
-                        "element": "Q2P1" if name == "time steps" else name,
-                        "quantity": quantity,
-                        "order, three finest": own[-1].order,
-                        "order, fitted to all but the finest": fitted_order(
-                            sizes[:-1], series[:-1, -1] - known[-1].value
-                        ),
-                        "grid convergence index (%)": 100 * worst,
-                    }
-                )
+                found = series(records, points, quantity)
+                own, truth = limits(sizes, found), of(records, family, quantity).value[-1]
+                fitted = fitted_order(sizes[:-1], found[:-1, -1] - truth)
+                row = {"scene": family, "refined": refined, "element": element}
+                row |= {"quantity": quantity, "order, three finest": own.order[-1]}
+                row |= {"order, fitted to all but the finest": fitted}
+                index = 100 * _worst(own.uncertainty, found[-1])
+                rows.append(row | {"grid convergence index (%)": index})
     return pd.DataFrame(rows)
 
 
@@ -331,64 +301,46 @@ def planner_table(records: Records) -> pd.DataFrame:
     beyond the default's mesh) nor below those of what is finer. The largest at the moments looked
     at, relative to what it is of.
     """
-    rows = []
+    families = [family for family in PRESSED if Point(family).name in records]
     energies = tuple(quantity for quantity in HEADLINE if quantity.startswith("energy"))
-    for kind, counts, limits, quantities in (
-        ("mesh", ROWS, mesh_limits, HEADLINE),
-        ("energy", ROWS, mesh_limits, energies),
-        ("steps", STEPS, step_limits, HEADLINE),
+    rows = []
+    for kind, counts, quantities in (
+        ("mesh", ROWS, HEADLINE),
+        ("energy", ROWS, energies),
+        ("steps", STEPS, HEADLINE),
     ):
-        columns = {}
-        for family in PRESSED:
-            if Point(family).name not in records:
-                continue
-            worst = np.zeros(len(counts))
-            for quantity in quantities:
-                known = limits(records, family, quantity)
-                value = np.array([each.value for each in known])
-                extra = interplay(records, family, quantity) if kind != "steps" else 0.0
-                unsure = np.array([each.uncertainty for each in known])
-                for k, n in enumerate(counts):
-                    floor = _at_most(unsure + extra * min(1.0, DEFAULT_ROWS / n), value)
-                    record = records.get(
-                        (Point(family, steps=n) if kind == "steps" else Point(family, rows=n)).name
-                    )
-                    if record is None or not record["values"]:
-                        worst[k] = np.nan
-                        continue
-                    off = _at_most(np.array(record["values"][quantity]) - value, value)
-                    worst[k] = max(worst[k], off, floor)
-            columns[family] = np.fmax.accumulate(worst[::-1])[::-1]
-        for k, n in enumerate(counts):
-            rows.append(
-                {"kind": kind, "count": n}
-                | {family: float(f"{column[k]:.2g}") for family, column in columns.items()}
-            )
+        columns = {family: _largest(records, family, kind, quantities) for family in families}
+        for k, count in enumerate(counts):
+            row = {family: float(f"{column[k]:.2g}") for family, column in columns.items()}
+            rows.append({"kind": kind, "count": count} | row)
     return pd.DataFrame(rows)
 
 
-def _at_most(off: np.ndarray, value: np.ndarray) -> float:
-    return float(np.max(np.abs(off / value)))
+def _largest(records: Records, family: str, kind: str, quantities: Iterable[str]) -> np.ndarray:
+    """(counts,) largest relative error of some quantities by mesh or steps, none below a finer."""
+    of_steps = kind == "steps"
+    counts = np.array(STEPS if of_steps else ROWS)
+    points = [Point(family, steps=n) if of_steps else Point(family, rows=n) for n in counts]
+    worst = np.zeros(len(counts))
+    for quantity in quantities:
+        known = (step_limits if of_steps else mesh_limits)(records, family, quantity)
+        off = np.abs(series(records, points, quantity) / known.value - 1).max(axis=1)
+        extra = 0.0 if of_steps else interplay(records, family, quantity)
+        share = np.minimum(1.0, DEFAULT_ROWS / counts)[:, None]
+        floor = np.abs((known.uncertainty + extra * share) / known.value).max(axis=1)
+        worst = np.maximum(worst, np.maximum(off, floor))
+    return np.fmax.accumulate(worst[::-1])[::-1]
 
 
 def presets_table(table: pd.DataFrame) -> pd.DataFrame:
     """The named presets: discretisation, cost and errors, of :func:`accuracy_table`."""
-    found = table[table["preset"].isin(["draft", "thesis", "fine"])].copy()
-    found["preset"] = pd.Categorical(found["preset"], ["draft", "thesis", "fine"])
-    keep = [
-        "preset",
-        "scene",
-        "nodes",
-        "unknowns",
-        "steps",
-        "iterations",
-        "memory (MB)",
-        "process time (s)",
-    ]
-    keep += ["cost (1 = default)", "error (%)", *(f"{q} (%)" for q in QUANTITIES), "machine"]
-    return (
-        found.sort_values(["preset", "scene"])[keep].astype({"preset": str}).reset_index(drop=True)
-    )
+    found = table[table["preset"].isin(["draft", "thesis", "fine"])]
+    columns = ["preset", "scene", "nodes", "unknowns", "steps", "iterations", "memory (MB)"]
+    columns += ["process time (s)", "cost (1 = default)", "error (%)"]
+    columns += [*(f"{q} (%)" for q in QUANTITIES), "machine"]
+    order = found["preset"].map({"draft": 0, "thesis": 1, "fine": 2})
+    found = found.assign(order=order).sort_values(["order", "scene"])
+    return found[columns].reset_index(drop=True)
 
 
 def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
@@ -402,46 +354,32 @@ def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
     return on
 
 
-def growth(nodes: np.ndarray, cost: np.ndarray, least: float = 3000) -> tuple[float, float]:
-    """Factor and exponent of cost = factor nodes^exponent, least squares over meshes of ``least``
-    nodes and more.
-    """
-    large = np.asarray(nodes) >= least
-    exponent, intercept = np.polyfit(
-        np.log(np.asarray(nodes)[large]), np.log(np.asarray(cost)[large]), 1
-    )
-    return float(np.exp(intercept)), float(exponent)
-
-
 def error_frame(table: pd.DataFrame, scenes: Iterable[str]) -> pd.DataFrame:
     """Error against cost: one row a discretisation and quantity, the worst of ``scenes`` and their
     mean cost; front marked.
     """
-    chosen = table[table["scene"].isin(list(scenes)) & table["error (%)"].notna()]
+    here = table[table["scene"].isin(list(scenes))]
+    chosen = here[here["error (%)"].notna()]
     keys = ["model", "preset", "element", "rows", "strain", "tolerance", "steps per leg"]
-    chosen = chosen.assign(**{key: [_text(value) for value in chosen[key]] for key in keys})
-    whole = (
-        chosen.groupby(keys, sort=False)["scene"].transform("nunique") == chosen["scene"].nunique()
-    )
-    grouped = chosen[whole].groupby(keys, sort=False)
-    rows = []
+    chosen = chosen.assign(**{key: chosen[key].map(_text) for key in keys})
+    complete = chosen.groupby(keys)["scene"].transform("nunique") == chosen["scene"].nunique()
+    grouped = chosen[complete].groupby(keys, sort=False)
+    uncertain = here[here["model"] == UNCERTAINTY]
+    frames = []
     for quantity in QUANTITIES:
+        column = f"{quantity} (%)"
         frame = grouped.agg(
             **{
                 "cost (1 = default)": ("cost (1 = default)", "mean"),
-                "error (%)": (f"{quantity} (%)", "max"),
+                "error (%)": (column, "max"),
                 "nodes": ("nodes", "max"),
             }
         ).reset_index()
         frame.insert(0, "quantity", quantity)
         frame["pareto"] = pareto(frame["cost (1 = default)"], frame["error (%)"])
-        rows.append(frame)
-    found = pd.concat(rows, ignore_index=True).assign(source="simulated")
-    uncertain = table[
-        (table["model"] == "uncertainty of the reference") & table["scene"].isin(list(scenes))
-    ]
-    found["uncertainty (%)"] = found["quantity"].map(lambda q: uncertain[f"{q} (%)"].max())
-    return found
+        frame["source"] = "simulated"
+        frames.append(frame.assign(**{"uncertainty (%)": uncertain[column].max()}))
+    return pd.concat(frames, ignore_index=True)
 
 
 def _text(value: object) -> str:
@@ -450,30 +388,25 @@ def _text(value: object) -> str:
     return str(value)
 
 
-def growth_frame(table: pd.DataFrame) -> pd.DataFrame:
-    """Process time and memory against nodes, a row each element and mesh (mean of pressed scenes),
-    with fitted exponents.
+def growth_frame(table: pd.DataFrame, least: float = 3000) -> pd.DataFrame:
+    """Process time and memory against nodes, a row each element and mesh (mean of pressed scenes).
+
+    Exponents of time are fitted over meshes of ``least`` nodes and more.
     """
-    plane = table[
+    standard = (
         table["scene"].isin(PRESSED)
         & (pd.to_numeric(table["steps per leg"], errors="coerce") == DEFAULT_STEPS)
         & (table["strain"] == "finite")
         & (table["tolerance"] == 1e-4)
-    ]
-    mean = (
-        plane.groupby(["element", "nodes"])[
-            ["process time (s)", "cost (1 = default)", "memory (MB)", "iterations"]
-        ]
-        .mean()
-        .reset_index()
     )
-    rows = []
-    for _, part in mean.groupby("element"):
-        if (part["nodes"] >= 3000).sum() >= 2:
-            _, exponent = growth(part["nodes"].to_numpy(), part["process time (s)"].to_numpy())
-            part = part.assign(exponent=exponent)
-        rows.append(part)
-    return pd.concat(rows, ignore_index=True).assign(source="simulated")
+    columns = ["process time (s)", "cost (1 = default)", "memory (MB)", "iterations"]
+    mean = table[standard].groupby(["element", "nodes"])[columns].mean().reset_index()
+    exponents = {}
+    for element, part in mean[mean["nodes"] >= least].groupby("element"):
+        if len(part) >= 2:
+            logs = np.log(part["nodes"]), np.log(part["process time (s)"])
+            exponents[element] = np.polyfit(*logs, 1)[0]
+    return mean.assign(exponent=mean["element"].map(exponents), source="simulated")
 
 
 FRAMES = {
@@ -493,8 +426,8 @@ each curve is drawn once.
 
 
 def accuracy_tables(job: SimpleNamespace) -> None:
-    """Job: `records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy, accuracy_orders,
-    accuracy_planner, presets.
+    """Job: `records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy,
+    accuracy_orders, accuracy_planner, presets.
     """
     records = {
         record["name"]: record

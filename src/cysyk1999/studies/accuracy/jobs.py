@@ -39,7 +39,7 @@ PICTURES = {
 
 @part("accuracy")
 def accuracy(project: Project) -> Iterator[Job]:
-    """What accuracy costs in time, and whether runs know their error: figures and tables; about 1.5 h of one core."""
+    """What accuracy costs in time, and whether runs know their error; 1.5 h of one core."""
     yield from _sweeps(project)
     for do, scenes in (
         (accuracy_edges, EDGED.values()),
@@ -58,9 +58,11 @@ def accuracy(project: Project) -> Iterator[Job]:
     yield Job(accuracy_strokes_table, {"parts": [*rows.values()]}, table)
     names = list(OUTSIDE)
     rows = [project.result(f"accuracy/belief/{name}.csv") for name in names]
+    files = [*read["files"], project.at("config/accuracy/outside.yaml")]
+    varied = read | {"files": files}
     for k in range(0, len(names), 7):
         made, more = {"rows": rows[k : k + 7]}, {"names": names[k : k + 7], **values}
-        yield Job(accuracy_belief, read, made, more, f"accuracy_belief_{k // 7 + 1}", **LONG)
+        yield Job(accuracy_belief, varied, made, more, f"accuracy_belief_{k // 7 + 1}", **LONG)
     yield project.joined("accuracy_beliefs", "accuracy_belief", rows)
     rows = {kind: project.result(f"accuracy/drawn/{kind}.csv") for kind in CLASSES}
     for kind, path in rows.items():
@@ -113,5 +115,5 @@ def _shown(project: Project) -> Iterator[Job]:
         "finer": [*map(path, sorted(finer))],
     }
     values = {"numbers": [figure.number for figure in figures]}
-    made = {"table": project.tables(["accuracy_shown"])}
+    made = {"data": project.tables(["accuracy_shown"])}
     yield Job(accuracy_shown, read, made, values, mem_mb=4000)

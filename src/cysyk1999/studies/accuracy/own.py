@@ -1,9 +1,8 @@
-"""Meshes of one's own: what their elements make wrong of which quantity, and whether runs on unseen
-ones know it.
+"""Errors on meshes of one's own, by element and quantity; and unseen meshes drawn at random.
 
-The table is measured on the inferred pad, its mesh split into the elements that users bring; the
-unseen ones are drawn at random: slabs and half-rings of two layers, in triangles and quads as gmsh
-makes them, fine at the skin and coarser inside.
+The table is measured on the inferred pad, its mesh split into the elements that users bring. The
+unseen meshes are slabs and half-rings of two layers, in triangles and quads as gmsh makes them,
+fine at the skin and coarser inside.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,14 +18,17 @@ from typing import Any
 import gmsh
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cysyk1999.publishing.write import publish_table, write_frame
-from cysyk1999.studies.accuracy.belief import difference, finest
-from cysyk1999.studies.accuracy.run import split
-from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, force
+from cysyk1999.studies.accuracy.belief import finest
+from cysyk1999.studies.accuracy.compare import difference, looked_at
+from cysyk1999.studies.common.documents import FLAT, cylinder, force
+from cysyk1999.studies.common.meshes import split
 from fingerpad import load_scene
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
+from fingerpad.simulation import simulate
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.files import write_pad
@@ -42,6 +45,9 @@ GRAMS = (3.5, 10, 20)
 EDGES = (60e-6, 100e-6, 170e-6, 300e-6, 450e-6)
 """m, along the skin of the mesh that is split: linear quads have half of it."""
 DEPTHS = (0.56e-3, 0.7e-3, 0.915e-3)
+SOLVED = {kind: KINDS[kind].solved for kind in ("quad4", "tri6", "quad9")}
+"""Kind of element of a mesh -> the element that it is solved with."""
+ERROR_OF = "error of the {} (%)"
 SHARES = (0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.1)
 """Edge over half width of the contact: ends of the classes that errors are gathered in."""
 
@@ -50,85 +56,67 @@ def measured(base: Scene, folder: Path) -> pd.DataFrame:
     """Errors of presses on meshes of every kind of element: a row a surface, force, edge and
     element.
     """
-    from fingerpad.simulation import simulate
-
     rows = []
-    for surface, stimulus in SURFACES.items():
-        for grams in GRAMS:
-            scene = _pressed(base, stimulus, grams)
-            truth = simulate(scene.with_accuracy("fine"), finest(scene.with_accuracy("fine")))
-            half_width = float(truth.contact_width[-1]) / 2
-            for edge in EDGES:
-                for kind in ("quad4", "tri6", "quad9"):
-                    run = _on_split(base, stimulus, grams, edge, kind, folder)
-                    own = edge / 2 if kind == "quad4" else edge
-                    errors = {
-                        name: 100 * difference(run, truth, read)[0]
-                        for name, read in QUANTITIES.items()
-                    }
-                    rows.append(
-                        {
-                            "surface": surface,
-                            "force (gf)": grams,
-                            "element": KINDS[kind].solved,
-                            "edge (um)": own * 1e6,
-                            "edge / half width": own / half_width,
-                        }
-                        | {f"error of the {name} (%)": error for name, error in errors.items()}
-                    )
+    for (surface, stimulus), grams in product(SURFACES.items(), GRAMS):
+        scene = looked_at(base, DEPTHS).varied(
+            {
+                "stimulus": stimulus,
+                "motion": [force(grams)],
+                "effects": {"finite_strain": True},
+                "accuracy": "fine",
+            }
+        )
+        truth = simulate(scene, finest(scene))
+        half_width = float(truth.contact_width[-1]) / 2
+        for edge, kind in product(EDGES, SOLVED):
+            run = _on_split(scene, edge, kind, folder)
+            own = edge / 2 if kind == "quad4" else edge
+            row = {"surface": surface, "force (gf)": grams, "element": SOLVED[kind]}
+            row |= {"edge (um)": own * 1e6, "edge / half width": own / half_width}
+            for name, variables in QUANTITIES.items():
+                row[ERROR_OF.format(name)] = 100 * difference(run, truth, variables)[0]
+            rows.append(row)
     return pd.DataFrame(rows)
 
 
-def _pressed(base: Scene, stimulus: Any, grams: float) -> Scene:
-    receptors = {
-        "outputs.receptors.depths": DEPTHS,
-        "outputs.receptors.offsets": (0.0,),
-        "effects": {"finite_strain": True},
-    }
-    return base.varied({"stimulus": stimulus, "motion": [force(grams)], **receptors})
-
-
-def _on_split(base: Scene, stimulus: Any, grams: float, edge: float, kind: str, folder: Path):
+def _on_split(scene: Scene, edge: float, kind: str, folder: Path) -> xr.Dataset:
     """History of a press on the pad's mesh split into elements of a kind, as a user's own mesh."""
-    from fingerpad.simulation import simulate
-
-    scene = _pressed(base, stimulus, grams)
     size = replace(
         plan(scene.with_accuracy("thesis")).mesh_size,
         skin_edge=edge,
         layer_edge=0.9 * edge,
         focus=(),
+        skin_radial_edge=None,
     )
-    mesh = build_pad_mesh(scene.specimen.outline, replace(size, skin_radial_edge=None))
+    mesh = build_pad_mesh(scene.specimen.outline, size)
     path = folder / f"{kind}.msh"
     write_pad(mesh if kind == "quad9" else split(mesh, kind), path)
-    accuracy = {"element": KINDS[kind].solved, "tolerance": 0.5, "once": True}
-    return simulate(
-        scene.varied({"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy})
-    )
+    accuracy = {"element": SOLVED[kind], "tolerance": 0.5, "once": True}
+    own = {"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy}
+    return simulate(scene.varied(own))
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
     """The largest errors by element and quantity in classes of edge over half width."""
-    ends = pd.cut(rows["edge / half width"], SHARES, right=False)
-    columns = [f"error of the {name} (%)" for name in QUANTITIES]
-    found = rows.groupby([rows["element"], ends], observed=True)[columns].max().reset_index()
-    found["edge / half width"] = [
-        f"{each.left:g} to {each.right:g}" for each in found["edge / half width"]
-    ]
+    over = "edge / half width"
+    classes = pd.cut(rows[over], SHARES, right=False)
+    columns = [ERROR_OF.format(name) for name in QUANTITIES]
+    found = rows.groupby([rows["element"], classes], observed=True)[columns].max().reset_index()
+    found[over] = [f"{ends.left:g} to {ends.right:g}" for ends in found[over]]
     return found
 
 
-# --- unseen ones ----------------------------------------------------------------------------------------------------------
+# --- unseen ones ---
 
 
 def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
     """A press on a mesh of one's own, in a document; how the mesh is made stands under ``own``."""
-    shape, kind, order = (
-        draw.choice(["slab", "ring"]),
-        draw.choice(["tri", "tri", "quad"]),
-        int(draw.integers(1, 3)),
-    )
+
+    def between(low, high):
+        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
+
+    shape, kind = draw.choice(["slab", "ring"]), draw.choice(["tri", "tri", "quad"])
+    own = {"shape": shape, "kind": kind, "order": int(draw.integers(1, 3))}
     cover, foam = float(draw.uniform(0.5, 1.5)), float(draw.uniform(2, 4))
     flat = shape == "ring" and draw.integers(3) == 0
     layers = {
@@ -138,27 +126,19 @@ def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
         }
         for name, moduli in (("cover", (30, 200)), ("foam", (15, 60)))
     }
+    own |= {
+        "edge": between(0.12, 0.6),
+        "coarser": float(draw.choice([1, 2, 4])),
+        "thicknesses": (cover, foam),
+        "radius": float(draw.uniform(6, 12)),
+    }
+    depths = [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"]
     return {
-        "own": {
-            "shape": shape,
-            "kind": kind,
-            "order": order,
-            "edge": float(np.exp(draw.uniform(np.log(0.12), np.log(0.6)))),
-            "coarser": float(draw.choice([1, 2, 4])),
-            "thicknesses": (cover, foam),
-            "radius": float(draw.uniform(6, 12)),
-        },
+        "own": own,
         "specimen": {"fixed": ["base"], "layers": layers, "contact_length": "10 mm"},
-        "stimulus": FLAT
-        if flat
-        else cylinder(float(f"{np.exp(draw.uniform(np.log(20), np.log(400))):.3g}")),
-        "motion": [force(float(f"{np.exp(draw.uniform(np.log(2), np.log(30))):.3g}"))],
-        "outputs": {
-            "receptors": {
-                "depths": [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"],
-                "offsets": ["0 mm", "0.5 mm"],
-            }
-        },
+        "stimulus": FLAT if flat else cylinder(float(f"{between(20, 400):.3g}")),
+        "motion": [force(float(f"{between(2, 30):.3g}"))],
+        "outputs": {"receptors": {"depths": depths, "offsets": ["0 mm", "0.5 mm"]}},
         "effects": {"finite_strain": "on"},
         "accuracy": "draft",
     }
@@ -181,18 +161,11 @@ def write_own(own: dict[str, Any], path: Path) -> None:
             (2, surfaces[:1], "cover"),
             (2, surfaces[1:], "foam"),
         ):
-            gmsh.model.setPhysicalName(
-                dimension, gmsh.model.addPhysicalGroup(dimension, tags), name
-            )
-        if (
-            own["kind"] == "quad"
-        ):  # a simple recombination and a smoothing of what is left of triangles
-            for option, value in (
-                ("RecombineAll", 1),
-                ("RecombinationAlgorithm", 2),
-                ("Algorithm", 8),
-            ):
-                gmsh.option.setNumber(f"Mesh.{option}", value)
+            gmsh.model.addPhysicalGroup(dimension, tags, name=name)
+        if own["kind"] == "quad":  # recombined simply, with what is left of triangles smoothed
+            gmsh.option.setNumber("Mesh.RecombineAll", 1)
+            gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 2)
+            gmsh.option.setNumber("Mesh.Algorithm", 8)
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(own["order"])
         gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
@@ -207,20 +180,15 @@ def _edges(own: dict[str, Any]) -> tuple[float, float, float]:
 
 
 def _slab(own):
-    geo, (top, middle, bottom), (cover, foam), half = (
-        gmsh.model.geo,
-        _edges(own),
-        own["thicknesses"],
-        8.0,
-    )
-    high = cover + foam
+    geo, (top, middle, bottom) = gmsh.model.geo, _edges(own)
+    (cover, foam), half = own["thicknesses"], 8.0
     places = (
         (-half, 0, bottom),
         (half, 0, bottom),
         (half, foam, middle),
-        (half, high, top),
-        (0, high, top),
-        (-half, high, top),
+        (half, cover + foam, top),
+        (0, cover + foam, top),
+        (-half, cover + foam, top),
         (-half, foam, middle),
     )
     points = [geo.addPoint(x, y, 0, size) for x, y, size in places]
@@ -233,21 +201,16 @@ def _slab(own):
 
 def _ring(own):
     geo, (cover, foam), radius = gmsh.model.geo, own["thicknesses"], own["radius"]
-    centre, circles = geo.addPoint(0, 0, 0, 1.0), []
+    centre, ends, arcs, surfaces = geo.addPoint(0, 0, 0, 1.0), [], [], []
     for r, size in zip((radius, radius - cover, radius - cover - foam), _edges(own), strict=True):
-        ends = [geo.addPoint(x, y, 0, size) for x, y in ((-r, 0), (0, r), (r, 0))]
-        circles.append(
-            (ends, [geo.addCircleArc(a, centre, b) for a, b in zip(ends, ends[1:], strict=False)])
-        )
-    surfaces = []
-    for (outer, along), (inner, back) in zip(circles, circles[1:], strict=False):
-        left, right = geo.addLine(outer[0], inner[0]), geo.addLine(outer[2], inner[2])
-        surfaces.append(
-            geo.addPlaneSurface(
-                [geo.addCurveLoop([*along, right, *(-arc for arc in reversed(back)), -left])]
-            )
-        )
-    return surfaces, circles[0][1], circles[2][1]
+        a, b, c = (geo.addPoint(x, y, 0, size) for x, y in ((-r, 0), (0, r), (r, 0)))
+        ends.append((a, c))
+        arcs.append([geo.addCircleArc(a, centre, b), geo.addCircleArc(b, centre, c)])
+    for k in (0, 1):
+        left, right = (geo.addLine(ends[k][side], ends[k + 1][side]) for side in (0, 1))
+        back = [-arc for arc in reversed(arcs[k + 1])]
+        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop([*arcs[k], right, *back, -left])]))
+    return surfaces, arcs[0], arcs[2]
 
 
 def unseen(seed: int, count: int) -> Iterator[tuple[str, str, dict[str, Any]]]:

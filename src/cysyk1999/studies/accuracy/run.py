@@ -1,4 +1,4 @@
-"""What accuracy costs in time: the runs of the study, one point each, and what is measured of them.
+"""What accuracy costs in time: the runs of the study, one point each, and their measurements.
 
 A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is
 complete; time steps, Newton tolerance, small strain and presets are varied one at a time from the
@@ -12,26 +12,29 @@ import json
 import os
 import statistics
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import get_context
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from threadpoolctl import threadpool_limits
 
+from cysyk1999.studies.accuracy.compare import DEPTHS, looked_at
+from cysyk1999.studies.common.documents import FLAT
+from cysyk1999.studies.common.meshes import split
 from fingerpad import load_scene
 from fingerpad.files import write_text
-from fingerpad.planning.plan import RULES, Plan, plan
+from fingerpad.mechanics.stepping import NewtonSettings, NonConvergence
+from fingerpad.planning.plan import Plan, plan
+from fingerpad.planning.rules import RULES
+from fingerpad.results import peak_memory_MB, provenance, states_found
+from fingerpad.scenes.scene import Scene
+from fingerpad.simulation import Simulation
 from fingerpad.specimen.build import build_pad_mesh, count_nodes
-from fingerpad.specimen.pad import PadMesh
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import xarray as xr
-
-    from fingerpad.scenes.scene import Scene
 
 FAMILY = {
     "flat": "ramp40_flat",
@@ -51,9 +54,17 @@ default's.
 """
 DEFAULT_ROWS, DEFAULT_STEPS, DEFAULT_TOLERANCE = 7, 20, 1e-4
 STEPS, TOLERANCES = (5, 10, 20, 40, 80), (1e-2, 1e-3, 1e-4, 1e-6)
-DEPTHS = (600e-6, 915e-6)
 LONG = 5.0
 """s of process time: what takes longer is measured once, for its spread is small beside it."""
+VARIABLES = {
+    "depth": "indentation_depth",
+    "width": "contact_width",
+    "centre pressure": "centre_pressure",
+    "peak pressure": "peak_pressure",
+}
+"""Name of a quantity in the study -> variable of a history."""
+MESHES = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "P2B": "tri6"}
+"""Element -> the mesh that it needs; others need quad4."""
 WAY = np.array([0.25, 0.5, 0.75, 1.0])
 """Parts of the way of a stroke at which it is looked at."""
 
@@ -62,10 +73,22 @@ WAY = np.array([0.25, 0.5, 0.75, 1.0])
 class Point:
     """One discretisation of one scene.
 
-    Attributes:
-        family: key of FAMILY. element: key of the elements. rows: mesh size, see ROWS. steps: of
-        each leg (a slide's have the length that belongs to them). tolerance: of Newton's method, on
-        the force. finite: strain. preset: name, in place of all.
+    Attributes
+    ----------
+    family : str
+        Key of :data:`FAMILY`.
+    element : str
+        Key of the elements.
+    rows : int
+        Mesh size, see :data:`ROWS`.
+    steps : int
+        Steps of each leg; a slide's have the length that belongs to them.
+    tolerance : float
+        Of Newton's method, on the force.
+    finite : bool
+        Finite strain.
+    preset : str
+        Name of a preset, in place of all.
     """
 
     family: str
@@ -78,11 +101,12 @@ class Point:
 
     @property
     def name(self) -> str:
-        """Name of the point's file: family and whatever is not the default's."""
+        """Name of the point's record."""
         if self.preset:
             return f"{self.family}_{self.preset}"
-        exponent = round(-np.log10(self.tolerance))
-        return f"{self.family}_{self.element}_m{self.rows}_s{self.steps}_t{exponent}_{'finite' if self.finite else 'small'}"
+        exponent, strain = round(-np.log10(self.tolerance)), "finite" if self.finite else "small"
+        parts = self.family, self.element, f"m{self.rows}", f"s{self.steps}", f"t{exponent}", strain
+        return "_".join(parts)
 
 
 def points() -> dict[str, Point]:
@@ -92,9 +116,8 @@ def points() -> dict[str, Point]:
         found += [Point(family, element, rows) for element in ELEMENTS for rows in ROWS]
         found += [Point(family, steps=steps) for steps in STEPS]
         found += [Point(family, tolerance=tolerance) for tolerance in TOLERANCES]
-        found += [Point(family, finite=False)] + [
-            Point(family, preset=preset) for preset in ("draft", "fine")
-        ]
+        found += [Point(family, finite=False)]
+        found += [Point(family, preset=preset) for preset in ("draft", "fine")]
     return {point.name: point for point in found}
 
 
@@ -106,105 +129,44 @@ def sweeps() -> dict[str, list[Point]]:
     return found
 
 
-def split(mesh: PadMesh, kind: str) -> PadMesh:
-    """A mesh of quad9 split into "quad4" (four each) or "tri6" (two each) with the same nodes;
-    mirror images stay so.
-    """
-    cells, curves = mesh.cells, mesh.curves
-    if kind == "quad4":
-        parts = [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]
-        cells = np.concatenate([cells[:, part] for part in parts])
-        curves = {
-            name: np.column_stack([facets[:, 0], facets[:, 2], facets[:, 2], facets[:, 1]]).reshape(
-                -1, 2
-            )
-            for name, facets in curves.items()
-        }
-        region = np.tile(mesh.region, 4)
-    elif kind == "tri6":
-        left = mesh.points[cells[:, 8], 0] < 0
-        one = [(0, 1, 2, 4, 5, 8), (0, 2, 3, 8, 6, 7)]
-        other = [(0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 6, 8)]
-        cells = np.concatenate(
-            [
-                np.where(left[:, None], cells[:, b], cells[:, a])
-                for a, b in zip(one, other, strict=True)
-            ]
-        )
-        region = np.tile(mesh.region, 2)
-    else:
-        raise ValueError(f"quad9 cannot be split into {kind}; allowed: quad4, tri6")
-    return replace(mesh, cells=cells, element=kind, region=region, curves=curves)
-
-
 def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
     """The scene with the receptors that are looked at, and the plan of the point."""
-    from fingerpad.scenes.scene import Receptors
-
-    receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     effects = scene.effects | {"finite_strain": point.finite}
-    scene = scene.varied({"outputs.receptors": receptors, "effects": effects}).with_accuracy(
-        point.preset or "thesis"
-    )
+    scene = looked_at(scene).varied({"effects": effects}).with_accuracy(point.preset or "thesis")
     chosen = plan(scene)
     if point.preset:
         return scene, chosen
-    size, scale = chosen.mesh_size, DEFAULT_ROWS / point.rows
-    # growth from edge to edge in proportion, so that meshes are refined alike everywhere
-    growth = min(RULES.presets["thesis"].growth ** scale, 3.0)
-    thickness = scene.specimen.outline.epidermis_thickness
+    scale = DEFAULT_ROWS / point.rows
     size = replace(
-        size, skin_edge=size.skin_edge * scale, layer_edge=thickness / point.rows, growth=growth
+        chosen.mesh_size,
+        skin_edge=chosen.mesh_size.skin_edge * scale,
+        layer_edge=scene.specimen.outline.epidermis_thickness / point.rows,
+        growth=min(RULES.presets["thesis"].growth ** scale, 3.0),
+        focus=(),
+        skin_radial_edge=None,
     )
-    size = replace(
-        size, focus=(), skin_radial_edge=None
-    )  # uniform ones: what elements are worth, wherever they are
-    slide_step = chosen.slide_step * DEFAULT_STEPS / point.steps
-    update = {"element": point.element, "mesh_size": size, "contact_edge": size.skin_edge}
-    return scene, replace(chosen, **update, steps_per_leg=point.steps, slide_step=slide_step)
+    return scene, replace(
+        chosen,
+        element=point.element,
+        mesh_size=size,
+        contact_edge=size.skin_edge,
+        steps_per_leg=point.steps,
+        slide_step=chosen.slide_step * DEFAULT_STEPS / point.steps,
+    )
 
 
-def meshed(scene: Scene, chosen: Plan) -> PadMesh:
-    """The whole pad's mesh for the plan's element."""
+def _run(point: Point, scene: Scene, chosen: Plan) -> xr.Dataset:
+    """History of a point, discretised before."""
     mesh = build_pad_mesh(scene.specimen.outline, chosen.mesh_size)
-    kind = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "P2B": "tri6"}.get(
-        chosen.element, "quad4"
-    )
-    return mesh if kind == "quad9" else split(mesh, kind)
-
-
-def simulation(point: Point, scene: Scene, chosen: Plan, mesh: PadMesh):
-    """The simulation of a point, ready to run; teaching elements too."""
-    from fingerpad.mechanics.stepping import NewtonSettings
-    from fingerpad.simulation import Simulation
-
-    class Teaching(Simulation):
-        def _receptors(self, instantaneous):
-            space = self.body.space
-            if space.element.pressure_modes not in (1, 3):
-                space.pressure_modes = partial(_nearest_mode, space)
-            return super()._receptors(instantaneous)
-
-    run = Teaching(scene, chosen, mesh)
-    share = point.tolerance / DEFAULT_TOLERANCE
-    default = NewtonSettings()
+    kind = MESHES.get(chosen.element, "quad4")
+    run = Simulation(scene, chosen, mesh if kind == "quad9" else split(mesh, kind))
+    share, default = point.tolerance / DEFAULT_TOLERANCE, NewtonSettings()
     run.stepper.settings = replace(
         default,
         force_tolerance=default.force_tolerance * share,
         gap_tolerance=default.gap_tolerance * share,
     )
-    return run
-
-
-def _nearest_mode(space, elements, points):
-    """Pointwise pressure modes (n, nq) at ``points`` (n, 2): those of the nearest quadrature
-    point.
-    """
-    position = np.einsum("qa,nai->nqi", space.element.values, space.points[space.cells[elements]])
-    nearest = np.sum((position - points[:, None]) ** 2, axis=2).argmin(1)
-    return np.where(
-        np.arange(space.psi.shape[1]) == nearest[:, None], space.psi[elements, nearest], 0.0
-    )
+    return run.run(None)
 
 
 def values(history: xr.Dataset) -> dict[str, list[float]]:
@@ -213,27 +175,15 @@ def values(history: xr.Dataset) -> dict[str, list[float]]:
 
     The peak rate of strain energy is one of the ramp, at each depth.
     """
-    top, way = (
-        int(np.flatnonzero(history.leg == history.leg[0])[-1]),
-        history.stroke_distance.values,
-    )
+    top = int(np.flatnonzero(history.leg == history.leg[0])[-1])
+    way = history.stroke_distance.values
     energies = history.strain_energy_density.values.T
-    traces = {
-        "depth": history.indentation_depth.values,
-        "width": history.contact_width.values,
-        "centre pressure": history.centre_pressure.values,
-        "peak pressure": history.peak_pressure.values,
-    } | {
-        f"energy {depth * 1e6:.0f} um": energy
-        for depth, energy in zip(DEPTHS, energies, strict=True)
-    }
-
-    def looked_at(trace):
-        if way[-1] == 0:
-            return [trace[top], trace[-1]]
-        return [trace[top], *np.interp(WAY * way[-1], way[top:], trace[top:])]
-
-    found = {name: [float(value) for value in looked_at(trace)] for name, trace in traces.items()}
+    traces = {name: history[variable].values for name, variable in VARIABLES.items()}
+    traces |= {f"energy {1e6 * z:.0f} um": e for z, e in zip(DEPTHS, energies, strict=True)}
+    found = {}
+    for name, trace in traces.items():
+        after = np.interp(WAY * way[-1], way[top:], trace[top:]) if way[-1] else trace[-1:]
+        found[name] = [float(trace[top]), *after.tolist()]
     rates = np.gradient(energies[:, : top + 1], history.time.values[: top + 1], axis=1)
     return found | {"peak energy rate": np.abs(rates).max(1).tolist()}
 
@@ -243,11 +193,9 @@ RULER = Point("flat", rows=2)
 
 
 def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
-    """What :func:`measure` says of each point; each in a process of its own, with the kernels
-    loaded before.
-    """
+    """Records of :func:`measure`, each from a process of its own with the kernels loaded."""
     processes = get_context("fork")
-    with processes.Pool(1) as pool:  # what compiling takes of memory is nobody's
+    with processes.Pool(1) as pool:  # compiles, so that its memory counts for no point
         pool.apply(_load_kernels, (sweep, scene))
     _load_kernels(sweep, scene)
     with processes.Pool(1, maxtasksperchild=1) as pool:
@@ -255,45 +203,46 @@ def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
 
 
 def _load_kernels(sweep: list[Point], scene: Scene) -> None:
-    """Those of a sweep and of the yardstick, compiled if they are not kept."""
+    """Load the kernels of a sweep and of the yardstick, or compile them."""
     for finite in {point.finite for point in sweep}:
         first = replace(sweep[0], rows=2, steps=5, finite=finite)
-        _run(first, *discretised(first, scene)), _run(RULER, *discretised(RULER, _plate(scene)))
+        _run(first, *discretised(first, scene))
+        _run(RULER, *_ruler(scene))
 
 
-def _plate(scene: Scene) -> Scene:
-    """The yardstick's scene: pressed by a plate as far as the first leg goes."""
-    from fingerpad.scenes.scene import Flat
-
-    return scene.varied({"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
+def _ruler(scene: Scene) -> tuple[Scene, Plan]:
+    """The yardstick's scene, pressed by a plate as far as the first leg goes, and its plan."""
+    first = {"stimulus": FLAT, "friction": 0.0, "motion": scene.motion[:1]}
+    return discretised(RULER, scene.varied(first))
 
 
 def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
-    """Run a point and say what it answers and costs.
+    """Run a point and record its answers and costs.
 
-    Args:
-        repeats: of the whole run, of which costs are medians; one that takes longer than
-        :data:`LONG` is run once.
+    Parameters
+    ----------
+    point : Point
+    scene : Scene
+    repeats : int
+        Of the whole run, of which costs are medians; one that takes longer than :data:`LONG` is
+        run once.
 
-    Returns:
+    Returns
+    -------
+    dict
         JSON-able: the point; values or the reason of failure; cost: process time of each repeat,
         meshing included, with that of the yardstick around it; memory of the process, unknowns,
         iterations; machine and versions.
     """
-    from threadpoolctl import threadpool_limits
-
-    from fingerpad.mechanics.stepping import NonConvergence
-    from fingerpad.results import peak_memory_MB, provenance, states_found
-
-    ruler = discretised(RULER, _plate(scene))
+    ruler = _ruler(scene)
     seconds, yardstick, history, failure = [], [], None, ""
     with threadpool_limits(1):
         before = _timed(lambda: _run(RULER, *ruler))
         for _ in range(repeats):
             start = time.process_time()
-            chosen_scene, chosen = discretised(point, scene)
+            asked, chosen = discretised(point, scene)
             try:
-                history = _run(point, chosen_scene, chosen)
+                history = _run(point, asked, chosen)
             except NonConvergence as error:
                 failure, history = str(error), error.dataset
             seconds.append(time.process_time() - start)
@@ -305,10 +254,9 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     found: dict[str, Any] = {"point": asdict(point), "name": point.name, "failure": failure}
     cost = {"cpu_s": seconds, "yardstick_s": yardstick, "memory_MB": peak_memory_MB()}
     if history is not None:
-        known = json.loads(history.attrs["cost"])
         cost |= {
-            "nodes": count_nodes(chosen_scene.specimen.outline, chosen.mesh_size),
-            "unknowns": known["unknowns"],
+            "nodes": count_nodes(asked.specimen.outline, chosen.mesh_size),
+            "unknowns": json.loads(history.attrs["cost"])["unknowns"],
             "steps": states_found(history),
             "iterations": int(history.newton_iterations.sum()),
             "cutbacks": int(history.cutbacks.sum()),
@@ -319,11 +267,7 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     return found | {"cost": cost, "load": os.getloadavg()[0], "made_by": provenance()}
 
 
-def _run(point, scene, chosen):
-    return simulation(point, scene, chosen, meshed(scene, chosen)).run(None)
-
-
-def _timed(call):
+def _timed(call: Callable[[], Any]) -> float:
     start = time.process_time()
     call()
     return time.process_time() - start

@@ -1,9 +1,8 @@
-"""Are the errors that figures state those of their curves? Stated errors beside changes on meshes
-with half the edges.
+"""Are the errors that figures state those of their curves?
 
-A figure is made twice: with the companions of its scenes, whose errors it states, and with finer
-runs in their place. What a curve changes by then is nearly all that it is wrong by; the rest
-follows by the order with which curves converge.
+A figure is made twice: with the companions of its scenes, from which it states its errors, and with
+runs on meshes of half the edges in their place. What a curve changes by then is nearly all of its
+error; the rest follows from the order with which curves converge.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from cysyk1999.figures.grammar import Figure
 from cysyk1999.figures.registry import FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
 from cysyk1999.measures.inputs import read_results
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.reference_data import read_reference
 from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import Histories, Meshes
@@ -40,7 +39,7 @@ MADE_FINER = (
     "ridged_stroke_",
     "ridged_40_",
 )
-"""How names of scenes begin that are made finer: all that figures read but chapter 3's and the
+"""First letters of the scenes that are made finer: all of figures but chapter 3's and the
 homogeneous pad.
 """
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
@@ -111,13 +110,11 @@ def accuracy_finer(job: SimpleNamespace) -> None:
 
 
 def accuracy_shown(job: SimpleNamespace) -> None:
-    """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures
-    `numbers`.
+    """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `data` (CSV) of the
+    figures `numbers`.
     """
     folder = Path(job.reference[0]).parent
     figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
-    results, finer = (
-        read_results([*job.histories, *job.meshes, *job.coarse]),
-        read_results(job.finer)[0],
-    )
-    publish_table(shown(figures, results, finer, read_reference(job.reference[0])), job.table[0])
+    results = read_results([*job.histories, *job.meshes, *job.coarse])
+    finer, reference = read_results(job.finer)[0], read_reference(job.reference[0])
+    write_frame(shown(figures, results, finer, reference), Path(job.data[0]))

@@ -1,12 +1,11 @@
-"""What strokes are wrong by, on meshes and with steps of several lengths: over plates and over
-waves, drawn at random.
+"""Errors of strokes on meshes and with steps of several lengths, over plates and over waves.
 
-Each run is held to one on the finest mesh with steps half as long, as
-:func:`~cysyk1999.studies.accuracy.belief.difference` has it, at the end of the press before, on
-which friction leaves its mark, and over the way. It does not fall evenly: where a corner of the
-waves comes to lie between nodes, and at which output the contact leaves the centre, is as it
-happens. So the largest error of the strokes counts, and the root of the mean square of all, to
-which a longer stroke, with as much in it as in many of these, comes nearer.
+The strokes are drawn at random. Each run is compared with one on the finest mesh with steps half as
+long (:func:`~cysyk1999.studies.accuracy.compare.difference`), at the end of the press before, on
+which friction leaves its mark, and over the way. Errors do not fall evenly: they depend on where a
+corner of the waves lies between nodes, and at which output the contact leaves the centre. So two
+numbers count: the largest error of all strokes, and the root of their mean square, which a longer
+stroke comes nearer to, for it has as much in it as many of these.
 """
 
 from __future__ import annotations
@@ -21,21 +20,22 @@ import numpy as np
 import pandas as pd
 
 from cysyk1999.publishing.write import publish_table, read_frame, write_frame
-from cysyk1999.studies.accuracy.belief import difference
+from cysyk1999.studies.accuracy.compare import difference
 from cysyk1999.studies.accuracy.drawn import drawn
 from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, DEFAULT_STEPS
-from cysyk1999.studies.stability import hard_cases
+from cysyk1999.studies.common.documents import FLAT, scene_of
 from fingerpad.planning.errors import PLATES, WAVES
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Scene
+from fingerpad.simulation import simulate
 
 MESHES, STEPS = (2, 4, 7, 10, 14), (10, 20, 40)
 """Elements across the epidermis, with the default's steps of a leg; and steps of a leg, on the
 default's mesh.
 """
 FINEST = 22, 40
-"""Elements and steps of what the others are held to."""
+"""Elements and steps of the truth."""
 STROKED_OVER = PLATES, WAVES
 SEEDS, COUNT = (22, 23), 60
 """Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they
@@ -44,27 +44,25 @@ are, and over a plate instead.
 RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
 """With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
 LARGEST, MEAN = "largest", "root mean square"
-"""Of the errors of all strokes."""
+"""Columns: of the errors of all strokes."""
 
 
 def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
     """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then
     all in time.
     """
-    drawn_ones = {
-        f"{seed}_{name}": each
+    change = {"stimulus": FLAT} if over == PLATES else {}
+    found = {
+        f"{seed}_{name}": document | change
         for seed in seeds
-        for name, kind, each in drawn(seed, COUNT)
+        for name, kind, document in drawn(seed, COUNT)
         if kind == "wavy"
     }
-    change = {"stimulus": hard_cases.FLAT} if over == PLATES else {}
-    found = {name: document | change for name, document in drawn_ones.items()}
     for (name, document), speed in zip(list(found.items()), cycle(SPEEDS), strict=False):
         press, slide = document["motion"]
-        found[f"{name}_timed"] = document | {
-            "motion": [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]
-        }
-    return {name: hard_cases.scene_of(document, name) for name, document in found.items()}
+        timed = [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]
+        found[f"{name}_timed"] = document | {"motion": timed}
+    return {name: scene_of(document, name) for name, document in found.items()}
 
 
 def discretised(scene: Scene, rows: int, steps: int) -> Plan:
@@ -74,35 +72,25 @@ def discretised(scene: Scene, rows: int, steps: int) -> Plan:
     known = RULES.errors
     these = replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]})
     only = replace(RULES, errors=these, least_steps_stroked=steps)
-    return replace(
-        plan(scene.with_accuracy({"tolerance": 0.05, "once": True}), only), asked_error=None
-    )
+    once = scene.with_accuracy({"tolerance": 0.05, "once": True})
+    return replace(plan(once, only), asked_error=None)
 
 
 def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, object]]:
     """A row a mesh and a length of steps: relative error, and the quantity that has it."""
-    from fingerpad.simulation import simulate
-
     truth = simulate(scene, discretised(scene, *FINEST))
-    for rows, steps in dict.fromkeys(
-        [*((n, DEFAULT_STEPS) for n in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]
-    ):
+    each = [*((rows, DEFAULT_STEPS) for rows in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]
+    for rows, steps in dict.fromkeys(each):
         off, worst = difference(simulate(scene, discretised(scene, rows, steps)), truth)
-        yield {
-            "over": over,
-            "scene": name,
-            "rows": rows,
-            "steps": steps,
-            "error": off,
-            "worst quantity": worst,
-        }
+        row = {"over": over, "scene": name, "rows": rows, "steps": steps}
+        yield row | {"error": off, "worst quantity": worst}
 
 
 def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
-    """Relative errors by mesh, and what fewer or more steps than the default's add to them; none
-    below one that is finer.
+    """Relative errors by mesh, and what fewer or more steps than the default's add to them.
 
-    found: of all scenes, as of :func:`stroke_errors`.
+    ``found`` has the rows of :func:`stroke_errors` of all scenes. No error is below that of a finer
+    mesh or shorter step.
     """
     errors = found.groupby(["over", "rows", "steps"])["error"]
     of_all = pd.DataFrame(

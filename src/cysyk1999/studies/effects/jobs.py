@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @part("effects")
 def effects(project: Project) -> Iterator[Job]:
-    """What each effect changes and costs, and the planner's choices and rules against that: a figure and tables."""
+    """What each effect changes and costs, and the planner's choices and rules against that."""
     read = {"files": [project.thesis_specimen()]}
     data = {name: project.result(f"effects/{name}.csv") for name in ("changes", "choices")}
     for name, path in data.items():
@@ -23,6 +23,7 @@ def effects(project: Project) -> Iterator[Job]:
         yield Job(effects_study, read, made, {"part": [name]}, f"effects_{name}", runtime=30)
     made = {
         "picture": project.pictures(["effects"]),
-        "tables": project.tables(["effects", "planner_choices", "planner_rules"]),
+        "tables": project.tables(["effects", "planner_rules"]),
+        "data": project.tables(["planner_choices"]),
     }
     yield Job(effects_picture, {"parts": [*data.values()]}, made)

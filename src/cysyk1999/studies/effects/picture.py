@@ -4,8 +4,8 @@ that.
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -23,38 +23,24 @@ from cysyk1999.publishing.style import (
     styled,
     wrapped,
 )
-from cysyk1999.publishing.write import publish, publish_table
-from cysyk1999.studies.effects.run import evidence, rules_table
+from cysyk1999.publishing.write import publish, publish_table, write_frame
+from cysyk1999.studies.effects.run import FIELDS, REFINED, WRONG, evidence, rules_table
 from fingerpad.planning.effects import EFFECTS
 
 LEAST = 1e-6
 """Smaller changes are drawn here."""
 DRAFT = 0.06
 """What a draft, as in the left panel, lets effects that are left out change."""
-WRONG = ("wrongly left out", "carried for nothing")
 WARNING = look_of("verdict", "fails", "color")["color"]
 
 
-class Look(NamedTuple):
-    """How an effect is shown."""
-
-    title: str
-    marker: str
-
-
-def looks() -> dict[str, Look]:
-    """Every effect of the planner, registered when this is asked, and what else is switched in the
-    study.
-    """
-    titles = {
+def looks() -> dict[str, tuple[str, str]]:
+    """Title and marker of every effect that is registered now, and of what else is switched."""
+    own = {
         name: (effect.title or name.replace("_", " "), effect.marker)
         for name, effect in EFFECTS.items()
     }
-    titles |= {
-        "local refinement": ("local refinement", "P"),
-        "full-field output": ("full-field output", "X"),
-    }
-    return {name: Look(*said) for name, said in titles.items()}
+    return own | {REFINED: (REFINED, "P"), FIELDS: (FIELDS, "X")}
 
 
 def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
@@ -74,8 +60,8 @@ def effects(frame: pd.DataFrame) -> Figure:
     height = 5.0
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (
-        "Simulated. Change of any headline quantity over its largest value, and process time, "
-        "with and without the effect on one "
+        "Simulated. Change of any headline quantity over its largest value, and process time, with "
+        "and without the effect on one "
         f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked "
         "for (line), what is carried at "
         "least a tenth of it (dashed)."
@@ -117,9 +103,7 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     change = rows["change"].clip(lower=LEAST)
     for row, y in zip(rows.to_dict("records"), change, strict=True):
         face = INK if str(row["planned"]) == "True" else "white"
-        ax.plot(
-            row["cost ratio"], y, known[row["effect"]].marker, color=INK, mfc=face, ms=5, mew=0.9
-        )
+        ax.plot(row["cost ratio"], y, known[row["effect"]][1], color=INK, mfc=face, ms=5, mew=0.9)
     ax.axvline(1, color=GREY, lw=0.7)
     ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
     ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
@@ -142,7 +126,7 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     places = 10 ** spread(logs, 0.33, np.log10(LEAST / 2) + 0.1, 0.62)
     for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
         ax.plot([row["cost ratio"], 12], [y, place], color=GREY, lw=0.4, zorder=0)
-        name = known[row["effect"]].title.split(" (")[0]
+        name = known[row["effect"]][0].split(" (")[0]
         ax.text(
             12.8,
             place,
@@ -166,14 +150,14 @@ def _floor(axis) -> None:
 def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
     known = {name: look for name, look in looks().items() if name in set(rows["effect"])}
     shift = np.random.default_rng(0)
-    for k, (name, look) in enumerate(known.items()):
+    for k, (name, (_, marker)) in enumerate(known.items()):
         for row in rows[rows["effect"] == name].dropna(subset="share").to_dict("records"):
             wrong = row["verdict"] in WRONG
             carried = "carried" in row["verdict"]
             ax.plot(
                 max(row["share"], LEAST),
                 k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13),
-                look.marker,
+                marker,
                 ms=4,
                 mew=0.7,
                 color=WARNING if wrong else INK,
@@ -190,7 +174,7 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
     )
     _floor(ax.xaxis)
     ax.set_yticks(
-        range(len(known)), [look.title.replace(" (", "\n(") for look in known.values()], fontsize=7
+        range(len(known)), [title.replace(" (", "\n(") for title, _ in known.values()], fontsize=7
     )
     ax.set_title(f"the planner's choices in {scenes} scenes", pad=18)
     wrong = int(rows["verdict"].isin(WRONG).sum())
@@ -205,13 +189,12 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
 
 
 def effects_picture(job: SimpleNamespace) -> None:
-    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_choices, planner_rules."""
+    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_rules, `data`: the
+    planner's choices.
+    """
     changes, choices = map(pd.read_csv, job.parts)
     frame = assemble(changes, choices)
     publish(effects(frame), frame, job.picture[0])
-    for table, path in zip(
-        (evidence(changes, choices), choices, rules_table(changes, choices)),
-        job.tables,
-        strict=True,
-    ):
-        publish_table(table, path)
+    for table, path in zip((evidence, rules_table), job.tables, strict=True):
+        publish_table(table(changes, choices), path)
+    write_frame(choices, Path(job.data[0]))

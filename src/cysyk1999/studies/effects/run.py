@@ -1,5 +1,4 @@
-"""What each effect changes in the answers and what it costs; and whether the planner's choices bear
-it out.
+"""What each effect changes in the answers and costs; and whether the planner's choices bear it out.
 
 An effect is simulated with and without it on the same mesh, so what differs is its own.
 :func:`study` does so on scenes where it matters and where it does not, :func:`verdicts` on scenes
@@ -9,9 +8,9 @@ drawn at random, for every choice that the planner made.
 from __future__ import annotations
 
 import json
-import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -21,7 +20,7 @@ import pandas as pd
 import xarray as xr
 
 from cysyk1999.publishing.write import write_frame
-from cysyk1999.studies.stability.hard_cases import (
+from cysyk1999.studies.common.documents import (
     FLAT,
     RAMP,
     TWO_WAVES,
@@ -32,10 +31,12 @@ from cysyk1999.studies.stability.hard_cases import (
     scene_of,
     slide,
 )
+from cysyk1999.studies.common.plans import with_effects
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.effect import OWN_PAIR
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.planning.plan import RULES, Plan, PlanError, Rules, plan
+from fingerpad.planning.plan import Plan, PlanError, plan
+from fingerpad.planning.rules import RULES, Rules
 from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
 
@@ -48,12 +49,10 @@ ANSWERS = {
     "tangential_force": "tangential force",
     "centre_lateral_displacement": "lateral displacement",
 }
-"""The headline quantities by which a change is told, as the history and as people call them."""
+"""Headline quantities: variable of a history -> its name in tables."""
 SLIDES_ONLY = ("tangential_force", "centre_lateral_displacement")
 KNOWN_SAFE = 0.1
-"""An effect worth less than this share of the accuracy need not be carried where leaving it out is
-known to be safe.
-"""
+"""Least share of the accuracy that an effect is worth carrying for."""
 SEEDS, SCENES = (31, 404, 505), 40
 """Scenes drawn of each seed. Seeds 1999, 20261121, 7, 2026 and 31 have set the planner's rules: the
 others are unseen.
@@ -64,9 +63,10 @@ FLATTENED = 1e-8
 """m, height of ridges that change nothing."""
 MOST_NODES = 6000
 """On larger meshes local refinement is not tried."""
-
-
-# -- what an effect changes ---------------------------------------------------------------------------------------------------
+REFINED, FIELDS = "local refinement", "full-field output"
+"""What is not an effect of the planner, but costs like one."""
+WRONG = ("wrongly left out", "carried for nothing")
+"""Verdicts against the planner."""
 
 
 def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
@@ -76,13 +76,10 @@ def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
     """
     at, other_at = [], []
     for leg in np.unique(one.leg.values[1:]):
-        here, there = (
-            1 + np.flatnonzero(history.leg.values[1:] == leg) for history in (one, other)
-        )
-        if len(here) != len(there):
-            here, there = here[-1:], there[-1:]
-        at.append(here)
-        other_at.append(there)
+        here, there = (1 + np.flatnonzero(h.leg.values[1:] == leg) for h in (one, other))
+        same = len(here) == len(there)
+        at.append(here if same else here[-1:])
+        other_at.append(there if same else there[-1:])
     at, other_at = np.concatenate(at), np.concatenate(other_at)
     out = {}
     for name, text in ANSWERS.items():
@@ -96,24 +93,12 @@ def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
     return out
 
 
-def with_effects(chosen: Plan, state: str | None = None, **switched: bool) -> Plan:
-    """A plan with effects switched, and the ``state`` of the moduli where viscosity is left out."""
-    effects = {
-        name: replace(effect, on=switched.get(name, effect.on))
-        for name, effect in chosen.effects.items()
-    }
-    timed = effects["viscoelasticity"].on
-    return replace(
-        chosen, effects=effects, timed=timed, state="long_term" if timed else state or chosen.state
-    )
-
-
-# -- on scenes where it matters and where it does not -------------------------------------------------------------------------
+# -- on scenes where it matters and where it does not ---
 
 
 @dataclass(frozen=True)
 class Pair:
-    """An effect on a scene: the plans with and without it, and what is said of them."""
+    """An effect on a scene; ``switch`` gives the scene and the plan with it (True) or without."""
 
     effect: str
     label: str
@@ -122,19 +107,11 @@ class Pair:
     switch: Callable[[Scene, bool], tuple[Scene, Plan]]
 
 
-def _switched(effect: str, state: str = "long_term"):
-    def switch(scene: Scene, on: bool) -> tuple[Scene, Plan]:
-        return scene, with_effects(plan(scene), state, **{effect: on})
-
-    return switch
+def _switched(scene: Scene, on: bool, effect: str, state: str) -> tuple[Scene, Plan]:
+    return scene, with_effects(plan(scene), state, **{effect: on})
 
 
-def flattened(scene: Scene) -> Scene:
-    """A scene whose inner ridges are next to nothing, on a mesh that could resolve them."""
-    return scene.varied({"specimen.ridges.inner.height": FLATTENED})
-
-
-def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+def _refined(scene: Scene, on: bool) -> tuple[Scene, Plan]:
     chosen = replace(plan(scene), once=True)
     size = chosen.mesh_size
     if not on:
@@ -144,46 +121,39 @@ def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
     return scene, replace(chosen, mesh_size=size)
 
 
-def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
-    if not on:
-        scene = scene.varied({"outputs.snapshots": ()})
+def _with_fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+    scene = scene if on else scene.varied({"outputs.snapshots": ()})
     return scene, plan(scene)
 
 
-MIDDLE = cylinder(209.97)
-BESIDE = (
-    Pair(
-        "local refinement",
-        "needle, 10,000 1/m",
-        True,
-        {"stimulus": cylinder(1e4), "motion": RAMP},
-        _focused,
-    ),
-    Pair("local refinement", "210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _focused),
-    Pair(
-        "full-field output",
-        "at 2 times",
-        False,
-        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": ["0.5 s", "2.5 s"]}},
-        _fields,
-    ),
-    Pair(
-        "full-field output",
-        "every 0.05 s",
-        False,
-        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": {"every": "0.05 s"}}},
-        _fields,
-    ),
+def flattened(scene: Scene) -> Scene:
+    """A scene whose inner ridges are next to nothing, on a mesh that could resolve them."""
+    return scene.varied({"specimen.ridges.inner.height": FLATTENED})
+
+
+NEEDLE, MIDDLE = ({"stimulus": cylinder(k), "motion": RAMP} for k in (1e4, 209.97))
+AT_TWO, OFTEN = (
+    MIDDLE | {"outputs": {"snapshots": times}}
+    for times in (["0.5 s", "2.5 s"], {"every": "0.05 s"})
 )
-"""What is not an effect of the planner, but costs like one."""
+BESIDE = (
+    Pair(REFINED, "needle, 10,000 1/m", True, NEEDLE, _refined),
+    Pair(REFINED, "210 1/m", False, MIDDLE, _refined),
+    Pair(FIELDS, "at 2 times", False, AT_TWO, _with_fields),
+    Pair(FIELDS, "every 0.05 s", False, OFTEN, _with_fields),
+)
 
 
 def pairs() -> tuple[Pair, ...]:
-    """What shows the effects that are registered when this is asked, and what is :data:`BESIDE`
-    them.
-    """
+    """Scenes that show the effects that are registered now, and :data:`BESIDE`."""
     own = (
-        Pair(name, shown.label, shown.matters, shown.document, _switched(name, shown.state))
+        Pair(
+            name,
+            shown.label,
+            shown.matters,
+            shown.document,
+            partial(_switched, effect=name, state=shown.state),
+        )
         for name, effect in EFFECTS.items()
         for shown in effect.shown
     )
@@ -191,30 +161,27 @@ def pairs() -> tuple[Pair, ...]:
 
 
 def study(shown: Iterable[Pair] | None = None, repeats: int = 11) -> pd.DataFrame:
-    """Changes and cost ratios of every pair, or of some: a row each; costs: process times, medians
-    of ``repeats`` in turn after one that is not counted, the ratio that of the ratios of each turn.
+    """Changes and cost ratios of pairs (all by default), a row each.
 
-    What ridges change is told on a mesh that has them, where they are flattened; what they cost,
-    beside the smooth pad's mesh.
+    Costs are process times, medians of ``repeats`` in turn after one that is not counted; the ratio
+    is the median of the ratios of each turn. What ridges change is told on a mesh that has them,
+    where they are flattened; what they cost, beside the smooth pad's mesh.
     """
     rows = []
     for pair in pairs() if shown is None else shown:
         scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
         ways = [pair.switch(scene, on) for on in (True, False)]
-        seconds = [[], []]
+        turns = []
         for _ in range(1 + repeats):
             histories = [simulate(*way) for way in ways]
-            for history, taken in zip(histories, seconds, strict=True):
-                taken.append(cost_of(history)["cpu_s"])
-        found = changes(
-            histories[0],
-            simulate(flattened(scene), ways[0][1]) if pair.effect == "ridges" else histories[1],
-        )
-        seconds = [taken[1:] for taken in seconds]
-        with_it, without = map(statistics.median, seconds)
-        ratio = statistics.median(one / other for one, other in zip(*seconds, strict=True))
+            turns.append([_cost(history)["cpu_s"] for history in histories])
+        one, other = histories
+        if pair.effect == "ridges":
+            other = simulate(flattened(scene), ways[0][1])
+        found = changes(one, other)
         worst = max(found, key=found.get)
-        unknowns = [cost_of(history)["unknowns"] for history in histories]
+        seconds = np.array(turns[1:])
+        unknowns = [_cost(history)["unknowns"] for history in histories]
         rows.append(
             {
                 "effect": pair.effect,
@@ -223,35 +190,32 @@ def study(shown: Iterable[Pair] | None = None, repeats: int = 11) -> pd.DataFram
                 "planned": planned(pair.effect, scene),
                 "change": found[worst],
                 "of": worst,
-                "cost ratio": ratio,
-                "with (s)": with_it,
-                "without (s)": without,
+                "cost ratio": np.median(seconds[:, 0] / seconds[:, 1]),
+                "with (s)": np.median(seconds[:, 0]),
+                "without (s)": np.median(seconds[:, 1]),
                 "unknowns with": unknowns[0],
                 "unknowns without": unknowns[1],
                 "repeats": repeats,
             }
             | {f"change of {name}": value for name, value in found.items()}
         )
-        print(pair.effect, pair.label, f"{found[worst]:.2g} ({worst})", f"{ratio:.2f}", flush=True)
+        print(pair.effect, pair.label, f"{found[worst]:.2g} ({worst})", flush=True)
     return pd.DataFrame(rows)
 
 
-def cost_of(history: xr.Dataset) -> dict[str, Any]:
-    """What the run of a history took."""
+def _cost(history: xr.Dataset) -> dict[str, Any]:
     return json.loads(history.attrs["cost"])
 
 
 def planned(effect: str, scene: Scene) -> bool:
-    """Does the planner switch the effect on for this scene?"""
+    """Whether the planner switches the effect on for this scene."""
+    if effect == FIELDS:
+        return bool(scene.outputs.snapshots)
     chosen = plan(scene)
-    special = {
-        "local refinement": lambda: bool(chosen.mesh_size.focus),
-        "full-field output": lambda: bool(scene.outputs.snapshots),
-    }
-    return special.get(effect, lambda: chosen.effects[effect].on)()
+    return bool(chosen.mesh_size.focus) if effect == REFINED else chosen.effects[effect].on
 
 
-# -- on scenes drawn at random ------------------------------------------------------------------------------------------------
+# -- on scenes drawn at random ---
 
 
 def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
@@ -261,56 +225,9 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
     Some presses are of pads with inner ridges, of heights over two decades.
     """
     draw = np.random.default_rng(seed)
-
-    def between(low, high):
-        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
-
-    def pick(*values):
-        return values[draw.integers(len(values))]
-
     made = 0
     while made < count:
-        kind = pick("force", "force", "force", "depth", "stroke")
-        stimulus, friction = (
-            pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000))),
-            0.0,
-        )
-        load, seconds = between(0.01, 30), pick(None, *(between(3e-3, 1e4) for _ in range(5)))
-        if kind == "depth":
-            target = between(5e-3, 1.0)
-            motion = [depth(target, None if seconds is None else target / seconds)]
-        elif kind == "stroke":
-            load, friction = between(2, 25), pick(0.0, between(0.02, 1.0), between(0.02, 1.0))
-            stimulus = pick(FLAT, TWO_WAVES, cylinder(between(20, 200)))
-            way = (
-                {"slide": "3 mm", "keep": "force"}
-                if seconds is None
-                else slide(3, between(1e-3, 100))
-            )
-            motion = [force(load, None if seconds is None else load / seconds), way]
-        else:
-            motion = [force(load, None if seconds is None else load / seconds)]
-        if kind != "stroke":
-            friction = pick(0.0, 0.0, 0.0, between(0.003, 1.0))
-            if seconds is not None and pick(True, False):
-                motion.append(hold(between(1e-2, 1e3)))
-        share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
-        prony = (
-            [{"g": share * g, "tau": f"{tau} s"} for g, tau in ((0.055, 3.25), (0.3691, 0.3414))]
-            if share
-            else "none"
-        )
-        document = {
-            "stimulus": stimulus,
-            "motion": motion,
-            "friction": friction,
-            "accuracy": pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005),
-            "specimen": {"prony": prony},
-        }
-        if kind != "stroke" and made % RIDGED == 0:
-            document["specimen"]["ridges"] = {
-                "inner": {"height": f"{between(0.5, 100):.3g} um", "phase": pick("tip", "valley")}
-            }
+        kind, document = _drawn(draw, ridged=made % RIDGED == 0)
         scene = scene_of(document, f"{kind} {made}")
         try:
             plan(scene)
@@ -318,6 +235,50 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
             continue  # so fast that inertia would matter
         made += 1
         yield scene
+
+
+def _drawn(draw: np.random.Generator, ridged: bool) -> tuple[str, dict[str, Any]]:
+    """Kind and document of a scene; the order of the draws decides what a seed gives."""
+
+    def between(low, high):
+        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
+
+    def pick(*values):
+        return values[draw.integers(len(values))]
+
+    kind = pick("force", "force", "force", "depth", "stroke")
+    stimulus = pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000)))
+    load, seconds = between(0.01, 30), pick(None, *(between(3e-3, 1e4) for _ in range(5)))
+
+    def rate(target):
+        return None if seconds is None else target / seconds
+
+    if kind == "stroke":
+        load, friction = between(2, 25), pick(0.0, between(0.02, 1.0), between(0.02, 1.0))
+        stimulus = pick(FLAT, TWO_WAVES, cylinder(between(20, 200)))
+        speed = None if seconds is None else between(1e-3, 100)
+        motion = [force(load, rate(load)), slide(3, speed)]
+    else:
+        target = between(5e-3, 1.0) if kind == "depth" else load
+        motion = [(depth if kind == "depth" else force)(target, rate(target))]
+        friction = pick(0.0, 0.0, 0.0, between(0.003, 1.0))
+        if seconds is not None and pick(True, False):
+            motion.append(hold(between(1e-2, 1e3)))
+    share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
+    terms = ((0.055, 3.25), (0.3691, 0.3414))
+    prony = [{"g": share * g, "tau": f"{tau} s"} for g, tau in terms] if share else "none"
+    accuracy = pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005)
+    specimen: dict[str, Any] = {"prony": prony}
+    if kind != "stroke" and ridged:
+        inner = {"height": f"{between(0.5, 100):.3g} um", "phase": pick("tip", "valley")}
+        specimen["ridges"] = {"inner": inner}
+    return kind, {
+        "stimulus": stimulus,
+        "motion": motion,
+        "friction": friction,
+        "accuracy": accuracy,
+        "specimen": specimen,
+    }
 
 
 def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
@@ -330,16 +291,17 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
     "worth" is the largest change of a headline quantity, "share" that over the accuracy.
     """
     rows = []
-    for seed, scene in ((number, scene) for number in seeds for scene in generated(count, number)):
+    for seed, scene in ((n, scene) for n in seeds for scene in generated(count, n)):
         chosen = plan(scene)
-        for effect, base, ways in trials(scene, chosen):
+        for effect, base, ways in _trials(scene, chosen):
             worth, of = _worth(scene, base, ways)
             on = planned(effect, scene)
-            dropped = on if effect == "symmetry" else not on
-            edge = (
-                f"edge {chosen.contact_edge * 1e6:.3g} um, contact "
-                f"{chosen.contact.half_width * 1e6:.3g} um to either side"
-            )
+            if effect in chosen.effects:
+                why = chosen.effects[effect].why
+            else:
+                edge, half_width = 1e6 * chosen.contact_edge, 1e6 * chosen.contact.half_width
+                why = f"edge {edge:.3g} um, contact {half_width:.3g} um to either side"
+            share = worth / scene.accuracy
             rows.append(
                 {
                     "seed": seed,
@@ -350,18 +312,19 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
                     "planned": "on" if on else "off",
                     "worth": worth,
                     "of": of,
-                    "share": worth / scene.accuracy,
-                    "verdict": verdict(dropped, worth / scene.accuracy),
-                    "why": chosen.effects[effect].why if effect in chosen.effects else edge,
+                    "share": share,
+                    "verdict": verdict(on if effect == "symmetry" else not on, share),
+                    "why": why,
                 }
             )
             print(*list(rows[-1].values())[:-1], flush=True)
     return pd.DataFrame(rows)
 
 
-def trials(
-    scene: Scene, chosen: Plan
-) -> Iterator[tuple[str, xr.Dataset, list[tuple[Scene, Plan]]]]:
+Ways = list[tuple[Scene, Plan]]
+
+
+def _trials(scene: Scene, chosen: Plan) -> Iterator[tuple[str, xr.Dataset, Ways]]:
     """Each effect of a plan that can be had either way: its name, what is compared with, and the
     other ways.
     """
@@ -369,29 +332,26 @@ def trials(
     draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
     smooth, ridged = (with_effects(draft, ridges=on) for on in (False, True))
     base = simulate(scene, smooth)
-    for effect, ways in alternatives(scene, smooth).items():
-        yield effect, base, [(scene, way) for way in ways]
+    for effect, plans in alternatives(scene, smooth).items():
+        yield effect, base, [(scene, other) for other in plans]
     if scene.specimen.ridges:
         yield "ridges", simulate(scene, ridged), [(flattened(scene), ridged)]
     coarse = chosen.mesh_size.skin_edge > chosen.contact.half_width / RULES.edges_per_half_width
     if coarse and chosen.nodes < MOST_NODES and not any(leg.strokes for leg in scene.motion):
-        on, off = (_focused(scene, on) for on in (True, False))
-        yield "local refinement", simulate(*on), [off]
+        yield REFINED, simulate(*_refined(scene, True)), [_refined(scene, False)]
 
 
-def _worth(scene: Scene, base: xr.Dataset, ways: list[tuple[Scene, Plan]]) -> tuple[float, str]:
+def _worth(scene: Scene, base: xr.Dataset, ways: Ways) -> tuple[float, str]:
     """The change by the best of some ways, and of what; nan where none of them can be solved."""
     found = []
     for way in ways:
         try:
-            found.append(_largest(changes(base, simulate(*way))))
+            changed = changes(base, simulate(*way))
         except NonConvergence as failure:
             print(f"{scene.name}: {failure}", flush=True)
+        else:
+            found.append(max((value, name) for name, value in changed.items()))
     return min(found, default=(np.nan, ""))
-
-
-def _largest(found: Mapping[str, float]) -> tuple[float, str]:
-    return max((value, name) for name, value in found.items())
 
 
 def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
@@ -401,18 +361,19 @@ def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
     Symmetry is only taken away: where the planner refuses it, it is not there.
     """
     on = {name: effect.on for name, effect in draft.effects.items()}
-    out = {"finite_strain": [with_effects(draft, finite_strain=not on["finite_strain"])]}
-    if scene.specimen.prony:
-        states = ["long_term", "instantaneous"] if on["viscoelasticity"] else [None]
-        out["viscoelasticity"] = [
-            with_effects(draft, state, viscoelasticity=not on["viscoelasticity"])
-            for state in states
+    other = {name: [with_effects(draft, **{name: not on[name]})] for name in on}
+    if on["viscoelasticity"]:
+        other["viscoelasticity"] = [
+            with_effects(draft, state, viscoelasticity=False)
+            for state in ("long_term", "instantaneous")
         ]
-    if scene.friction:
-        out["friction"] = [with_effects(draft, friction=not on["friction"])]
-    if on["symmetry"]:
-        out["symmetry"] = [with_effects(draft, symmetry=False)]
-    return out
+    possible = {
+        "finite_strain": True,
+        "viscoelasticity": scene.specimen.prony,
+        "friction": scene.friction,
+        "symmetry": on["symmetry"],
+    }
+    return {name: other[name] for name, can in possible.items() if can}
 
 
 def verdict(dropped: bool, share: float) -> str:
@@ -426,7 +387,7 @@ def verdict(dropped: bool, share: float) -> str:
     return "rightly carried" if share >= KNOWN_SAFE else "carried for nothing"
 
 
-# -- rules and their evidence -------------------------------------------------------------------------------------------------
+# -- rules and their evidence ---
 
 
 def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
@@ -442,173 +403,71 @@ def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for (effect, choice), part in found.dropna(subset="share").groupby(["effect", "planned"]):
         worst = part.loc[part["share"].idxmax()]
-        rows.append(
-            {
-                "effect": effect,
-                "scene": f"{len(part)} drawn at random",
-                "planned": choice,
-                "change": worst["worth"],
-                "of": worst["of"],
-                "least worth / accuracy": part["share"].min(),
-                "largest worth / accuracy": worst["share"],
-                "wrongly left out": int((part["verdict"] == "wrongly left out").sum()),
-                "carried for nothing": int((part["verdict"] == "carried for nothing").sum()),
-            }
-        )
+        row = {"effect": effect, "scene": f"{len(part)} drawn at random", "planned": choice}
+        row |= {"change": worst["worth"], "of": worst["of"]}
+        row |= {"least worth / accuracy": part["share"].min()}
+        row |= {"largest worth / accuracy": worst["share"]}
+        rows.append(row | {text: int((part["verdict"] == text).sum()) for text in WRONG})
     return pd.concat([chosen, pd.DataFrame(rows)], ignore_index=True)
-
-
-_DECLARED = {
-    each.name: each.metadata
-    for effect in EFFECTS.values()
-    if effect.rules
-    for each in fields(effect.rules)
-}
-DECIDES = {
-    **{name: declared["decides"] for name, declared in _DECLARED.items()},
-    "presets": "discretisations by name",
-    "errors": "mesh and steps for a tolerance, and what a run believes of its error: as measured",
-    "mesh_order": "errors of meshes beyond those measured: order in the edge",
-    "time_order": "errors of steps beyond those measured: order in the step",
-    "edge_share": "error, at least: an edge of the contact is misplaced by this share of an element's edge",
-    "stroked": "factor on measured errors of strokes",
-    "safety": "factor on measured errors of presses and on that",
-    "fillet_error": "error of the peak pressure on a rounded edge, over edge / length of the contact there, to a power",
-    "fillet_order": "that power",
-    "edge_error": "error under a true edge, over edge / half width of the face",
-    "edge_floor": "error under a true edge, at least",
-    "edge_finest": "error that a mesh is at most made for there",
-    "bumps": "factor on the error of measured profiles",
-    "profile_share": "share of a tolerance that the smoothing of a measured profile may use up before a longer one is tried",
-    "own": "what meshes of one's own are believed to be wrong by, by element and quantity: as measured",
-    "linear_triangle": "by how much coarser quadratic triangles of external meshes count than their edges, on a stroke",
-    "linear_quad": "by how much coarser linear quads of external meshes count than their edges, on a stroke",
-    "least_edge": "shortest element edge that is made (m)",
-    "least_half_width": "contacts narrower to either side are refused (m)",
-    "most_nodes": "meshes of more nodes are refused",
-    "most_memory": "plans that need more than this share of the machine's memory are refused",
-    "bytes_node": "memory of a node",
-    "bytes_step": "memory of a node and step",
-    "most_runs": "runs of a scene that misses its tolerance, at most",
-    "most_nodes_again": "nodes on which a scene that missed its tolerance is run again, at most",
-    "least_steps": "steps of a leg for a tolerance, at least",
-    "least_steps_stroked": "the same where there is a stroke",
-    "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
-    "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 20, 33)",
-    "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact at least; `draft` has 6",
-    "stroked_growth": "growth of edges away from a contact that moves: the preset's squared, up to this",
-    "stroked_share": "edges under the middle of a pad that is stroked, over the preset's",
-    "stroked_middle": "the middle: to either side at least (m)",
-    "inertia_limit": "scenes with rho v^2 / mu above this are refused",
-    "seconds_start": "predicted cost: start of a process (s)",
-    "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
-    "seconds_small": "predicted cost: a node and Newton iteration, small strain (s)",
-    "iterations_finite": "predicted cost: iterations a step, finite strain",
-    "iterations_small": "predicted cost: iterations a step, small strain",
-}
-"""What each of the planner's rules decides."""
-WHERE = {
-    **{name: declared["evidence"] for name, declared in _DECLARED.items()},
-    "presets": "studies of accuracy",
-    "errors": "figures/tables/accuracy_planner.csv, accuracy_strokes.csv",
-    "mesh_order": "figures/tables/accuracy_orders.csv",
-    "time_order": "figures/tables/accuracy_orders.csv",
-    "edge_share": "figures/tables/accuracy_belief.csv",
-    "stroked": "chosen: a quarter more than the strokes measured",
-    "safety": "figures/tables/accuracy_belief.csv",
-    **dict.fromkeys(
-        ("fillet_error", "fillet_order", "edge_error", "edge_floor", "edge_finest", "bumps"),
-        "figures/tables/accuracy_drawn.csv",
-    ),
-    "profile_share": "tests/test_measured_profiles.py",
-    **dict.fromkeys(("linear_triangle", "linear_quad"), "figures/tables/accuracy.csv"),
-    "own": "figures/tables/accuracy_own.csv",
-    "least_edge": "chosen: a tenth of a micrometre, below which skin is no continuum",
-    "least_half_width": "chosen: two of the shortest edges",
-    "most_nodes": "chosen: some 20 GB",
-    "most_memory": "chosen",
-    **dict.fromkeys(
-        ("bytes_node", "bytes_step"), "figures/tables/accuracy.csv, on 1e5 nodes and in 176 steps"
-    ),
-    "most_runs": "chosen: the second run knows the contact",
-    "most_nodes_again": "chosen: some minutes of one core",
-    "least_steps": "chosen: fewer would do for the end of a leg, but a curve of fewer is none",
-    "least_steps_stroked": "figures/tables/accuracy_strokes.csv",
-    "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
-    "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
-    "rows_per_half_width": "figures/tables/accuracy_edges.csv",
-    "stroked_growth": "figures/tables/accuracy_shown.csv: strokes are as near to finer ones as with the preset's own",
-    **dict.fromkeys(
-        ("stroked_share", "stroked_middle"), "figures/tables/accuracy_shown.csv, of strokes"
-    ),
-    "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
-}
-"""Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
 
 
 def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) -> pd.DataFrame:
     """Every rule of the planner: value, what it decides and its evidence. ``pairs``: of
     :func:`study`.
     """
-
-    def planner(effect: str) -> str:
-        part = found[found["effect"] == effect]
-        off, on = (part.loc[part["planned"] == choice, "share"] for choice in ("off", "on"))
-        said = (
-            [f"left out in {len(off)} scenes, worth up to {off.max():.2g} of the accuracy"]
-            if len(off)
-            else []
-        )
-        return "; ".join(
-            [*said, f"carried in {len(on)}, worth {on.min():.2g} of it or more"]
-            if len(on)
-            else said
-        )
-
-    def pair(effect: str) -> str:
-        part = pairs[pairs["effect"] == effect]
-        return "; ".join(
-            f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times"
-            for row in part.to_dict("records")
-        )
-
-    own = {"edges_per_half_width": planner("local refinement")}
-    for name, effect in EFFECTS.items():
-        for each in fields(effect.rules) if effect.rules else ():
-            said = each.metadata["evidence"]
-            own[each.name] = (
-                planner(name) if said == "" else pair(name) if said == OWN_PAIR else said
-            )
+    owner = {
+        known.name: name
+        for name, effect in EFFECTS.items()
+        if effect.rules
+        for known in fields(effect.rules)
+    }
     rows = []
-    for name in (f.name for f in fields(Rules)):
-        value = getattr(rules, name)
-        if isinstance(value, Mapping):
-            value = ", ".join(
-                f"{key}: {getattr(preset, 'skin_edge', np.nan) * 1e6:g} um"
-                for key, preset in value.items()
-            )
-        elif not isinstance(value, (float, int)):
-            value = "table"
-        evidence = own.get(name) or WHERE.get(name, "figures/tables/speed.md")
-        rows.append(
-            {
-                "rule": name,
-                "value": str(value),
-                "decides": DECIDES.get(name, ""),
-                "evidence": evidence,
-            }
-        )
+    for known in fields(Rules):
+        about = known.metadata["evidence"]
+        if not about:
+            about = _of_choices(found, owner.get(known.name, REFINED))
+        elif about == OWN_PAIR:
+            about = _of_pairs(pairs, owner[known.name])
+        value = _text(getattr(rules, known.name))
+        row = {"rule": known.name, "value": value, "decides": known.metadata["decides"]}
+        rows.append(row | {"evidence": about})
     fixed = {
         **{name: effect.always for name, effect in EFFECTS.items() if effect.always},
-        "local refinement": "fine edges under the contact: presses whose tolerance they meet with less work",
-        "full-field output": "full fields: at the times the scene names, no others",
+        REFINED: "fine edges under the contact: presses whose tolerance they meet with less work",
+        FIELDS: "full fields: at the times the scene names, no others",
     }
     rows += [
-        {"rule": name, "value": "", "decides": text, "evidence": pair(name)}
+        {"rule": name, "value": "", "decides": text, "evidence": _of_pairs(pairs, name)}
         for name, text in fixed.items()
     ]
     return pd.DataFrame(rows)
+
+
+def _of_choices(found: pd.DataFrame, effect: str) -> str:
+    """What the drawn scenes say of an effect."""
+    part = found[found["effect"] == effect]
+    off, on = (part.loc[part["planned"] == choice, "share"] for choice in ("off", "on"))
+    texts = []
+    if len(off):
+        texts.append(f"left out in {len(off)} scenes, worth up to {off.max():.2g} of the accuracy")
+    if len(on):
+        texts.append(f"carried in {len(on)}, worth {on.min():.2g} of it or more")
+    return "; ".join(texts)
+
+
+def _of_pairs(pairs: pd.DataFrame, effect: str) -> str:
+    """What the chosen scenes say of an effect."""
+    part = pairs[pairs["effect"] == effect]
+    return "; ".join(
+        f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times"
+        for row in part.to_dict("records")
+    )
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name}: {1e6 * preset.skin_edge:g} um" for name, preset in value.items())
+    return str(value) if isinstance(value, float | int) else "table"
 
 
 def effects_study(job: SimpleNamespace) -> None:

@@ -15,11 +15,12 @@ import inspect
 import json
 import os
 import resource
-import statistics
 import subprocess
 import sys
 import tempfile
-from importlib.metadata import PackageNotFoundError, version
+from functools import partial
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -29,7 +30,7 @@ import pandas as pd
 import yaml
 
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.accuracy.meshes import quarters
+from cysyk1999.studies.common.meshes import split
 from cysyk1999.studies.peers import with_felupe, with_ngsolve
 from fingerpad import load_scene, plan
 from fingerpad.results import provenance
@@ -64,10 +65,12 @@ sys.exit(main(["run", *sys.argv[1:], "--quiet", "--force"]))
 
 
 def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
-    """Writes a press as a scene on the mesh it shares with the peers, as their problem, and as one
-    on the planner's own mesh.
+    """Write a press as a scene on the mesh it shares with the peers, as their problem, and as a
+    scene on the planner's own mesh.
 
-    Returns:
+    Returns
+    -------
+    tuple of Path
         Both scenes.
     """
     stimulus, depth = PRESSES[name]
@@ -78,16 +81,18 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
         "effects": {"finite_strain": "on"},
     }
     base = load_scene(document | {"accuracy": {"skin_edge": edge}})
-    mesh = quarters(mesh_for(base, plan(base)))
+    mesh = split(mesh_for(base, plan(base)), "quad4")
     write_pad(mesh, folder / "pad.msh")
+    elastic = {"layers": "homogeneous", "prony": "none"}
     same = document | {
-        "specimen": {"mesh": "pad.msh", "layers": "homogeneous", "prony": "none"},
+        "specimen": {"mesh": "pad.msh"} | elastic,
         "accuracy": {"element": "Q1P0", "steps": 1},
         "effects": {"finite_strain": "on", "symmetry": "off"},
     }
-    own = document | {"specimen": {"layers": "homogeneous", "prony": "none"}, "accuracy": "thesis"}
-    for file, content in (("same.yaml", same), ("own.yaml", own)):
-        (folder / file).write_text(yaml.safe_dump(content, sort_keys=False))
+    own = document | {"specimen": elastic, "accuracy": "thesis"}
+    files = folder / "same.yaml", folder / "own.yaml"
+    for file, content in zip(files, (same, own), strict=True):
+        file.write_text(yaml.safe_dump(content, sort_keys=False))
     layer = base.specimen.layers.fat
     known = moduli(layer.youngs_modulus, layer.poisson_ratio, Prony(), "long_term")
     held = np.concatenate([mesh.curves[curve] for curve in ("bone", "nail")])
@@ -104,22 +109,19 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
         depth=depth * 1e-3,
         curvature=getattr(base.stimulus, "curvature", 0.0),
     )
-    return folder / "same.yaml", folder / "own.yaml"
+    return files
 
 
 def timed(command: list[str]) -> dict[str, Any] | None:
     """What a process prints last, with its process time as ``process``; None if it fails."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     threads = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+    how = {"capture_output": True, "text": True, "env": os.environ | threads}
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, env=os.environ | threads, timeout=PATIENCE
-        )
-    except subprocess.TimeoutExpired:
+        done = subprocess.run(command, timeout=PATIENCE, check=True, **how)
+    except (subprocess.TimeoutExpired, subprocess.CalledProcessError):
         return None
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode:
-        return None
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return json.loads(done.stdout.strip().splitlines()[-1]) | {"process": spent}
 
@@ -130,33 +132,27 @@ def own(scene: Path) -> dict[str, Any] | None:
     found = timed([sys.executable, "-c", _OWN, str(scene), "--out", str(out)])
     if found is None:
         return None
-    told = json.loads((out / "summary.json").read_text())
-    last = told["legs"][-1]
-    run = {
-        "iterations": told["run"]["newton_iterations"],
-        "increments": told["run"]["steps"],
-        "nodes": told["run"]["nodes"],
+    summary = json.loads((out / "summary.json").read_text())
+    run = summary["run"]
+    return found | {
+        "force": summary["legs"][-1]["force_N_per_m"],
+        "iterations": run["newton_iterations"],
+        "increments": run["steps"],
+        "nodes": run["nodes"],
     }
-    return found | {"force": last["force_N_per_m"]} | run
 
 
-def peer(name: str, folder: Path) -> tuple[list[str], dict[str, Any]]:
-    """A peer's command with as few increments as it needs, and what it found with them.
+def peer(name: str, folder: Path, increments: int) -> dict[str, Any] | None:
+    """What a peer finds with so many increments, timed; None if it does not converge."""
+    problem, code = str(folder / "problem.npz"), PEERS[name].__file__
+    found = timed([sys.executable, code, problem, str(increments)])
+    nodes = len(np.load(problem)["points"])
+    return found and found | {"increments": increments, "nodes": nodes}
 
-    Raises:
-        RuntimeError: none of :data:`INCREMENTS` is enough.
-    """
-    for increments in INCREMENTS:
-        command = [
-            sys.executable,
-            PEERS[name].__file__,
-            str(folder / "problem.npz"),
-            str(increments),
-        ]
-        found = timed(command)
-        if found is not None:
-            return command, found | {"increments": increments}
-    raise RuntimeError(f"{name} does not converge with {INCREMENTS[-1]} increments")
+
+def enough(name: str, folder: Path) -> int | None:
+    """As few of :data:`INCREMENTS` as a peer needs; None if none is enough."""
+    return next((n for n in INCREMENTS if peer(name, folder, n)), None)
 
 
 def study(
@@ -166,82 +162,46 @@ def study(
     package on the same mesh.
     """
     rows = []
-    installed = [name for name in PEERS if _version(name)]
     for press in presses:
         with tempfile.TemporaryDirectory() as path:
             folder = Path(path)
             same, free = scenes(press, folder, edge)
-            nodes = len(np.load(folder / "problem.npz")["points"])
-            commands, known = {}, {}
-            for name in installed:
-                try:
-                    commands[name], known[name] = peer(name, folder)
-                except RuntimeError as error:
-                    print(f"{press}: {error}", flush=True)
-            calls = {
-                "fingerpad": lambda same=same: own(same),
-                "fingerpad, own mesh": lambda free=free: own(free),
-            }
-            calls |= {
-                name: (lambda command=command: timed(command)) for name, command in commands.items()
-            }
-            runs: dict[str, list[dict[str, Any]]] = {name: [] for name in calls}
-            for _ in range(repeats):
-                for name, call in calls.items():
-                    runs[name].append(call())
-            base = runs["fingerpad"]
-            lines = {name: _lines(inspect.getsource(PEERS[name].press)) for name in installed}
-            lines |= {
-                name: _lines(file.read_text())
-                for name, file in (("fingerpad", same), ("fingerpad, own mesh", free))
-            }
-            for name, found in runs.items():
-                package = f"{name} {_version(name)}" if name in installed else name
-                row = {
-                    "press": press,
-                    "package": package,
-                    "nodes": found[0].get("nodes", nodes),
-                    "force (N/m)": found[0]["force"],
-                }
-                row["force off (1)"] = abs(found[0]["force"] / base[0]["force"] - 1)
-                for part in ("process", "loop"):
-                    times = [run[part] for run in found]
-                    row |= {
-                        f"{part} (s)": statistics.median(times),
-                        f"{part} spread (s)": max(times) - min(times),
-                    }
-                    row[f"{part} ratio (1)"] = statistics.median(
-                        [a[part] / b[part] for a, b in zip(found, base, strict=True)]
-                    )
-                row |= {
-                    "iterations": found[0]["iterations"],
-                    "increments": (known.get(name) or found[0])["increments"],
-                }
-                rows.append(
-                    row
-                    | {
-                        "lines": lines[name],
-                        "repeats": repeats,
-                        "machine": provenance()["processor"],
-                    }
-                )
+            calls = {"fingerpad": partial(own, same), "fingerpad, own mesh": partial(own, free)}
+            texts = {"fingerpad": same.read_text(), "fingerpad, own mesh": free.read_text()}
+            for name in filter(find_spec, PEERS):
+                increments = enough(name, folder)
+                package = f"{name} {version(name)}"
+                if increments is None:
+                    print(f"{press}: {name} does not converge", flush=True)
+                    continue
+                calls[package] = partial(peer, name, folder, increments)
+                texts[package] = inspect.getsource(PEERS[name].press)
+            turns = [{name: call() for name, call in calls.items()} for _ in range(repeats)]
+            base = [turn["fingerpad"] for turn in turns]
+            for name in calls:
+                row = {"press": press, "package": name}
+                row |= _row([turn[name] for turn in turns], base) | {"lines": _lines(texts[name])}
+                rows.append(row | {"repeats": repeats, "machine": provenance()["processor"]})
     return pd.DataFrame(rows)
 
 
+def _row(runs: list[dict[str, Any]], base: list[dict[str, Any]]) -> dict[str, Any]:
+    """Answers and costs of a package's runs beside those of this package in the same turns."""
+    force = runs[0]["force"]
+    row = {"nodes": runs[0]["nodes"], "force (N/m)": force}
+    row["force off (1)"] = abs(force / base[0]["force"] - 1)
+    for part in ("process", "loop"):
+        times, own_times = (np.array([run[part] for run in each]) for each in (runs, base))
+        row[f"{part} (s)"] = np.median(times)
+        row[f"{part} spread (s)"] = np.ptp(times)
+        row[f"{part} ratio (1)"] = np.median(times / own_times)
+    return row | {name: runs[0][name] for name in ("iterations", "increments")}
+
+
 def _lines(text: str) -> int:
-    """Lines that say something."""
-    return sum(
-        1
-        for line in text.splitlines()
-        if line.strip() and not line.strip().startswith(("#", '"""'))
-    )
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return ""
+    """Lines of code."""
+    lines = (line.strip() for line in text.splitlines())
+    return sum(1 for line in lines if line and not line.startswith(("#", '"""')))
 
 
 def peers_table(job: SimpleNamespace) -> None:

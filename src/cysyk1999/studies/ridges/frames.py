@@ -19,6 +19,7 @@ from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directio
 from cysyk1999.measures.inputs import read_coarse, read_results
 from cysyk1999.measures.quantities import DISTANCE, SED, P, X
 from cysyk1999.publishing.write import without_round_off, write_frame
+from cysyk1999.studies.common.ridges import boundary
 from cysyk1999.studies.ridges.picture import (
     BAND,
     DRAWN,
@@ -34,7 +35,7 @@ from cysyk1999.studies.ridges.picture import (
     RECEPTORS_SWEPT,
     RIGHT,
 )
-from cysyk1999.studies.ridges.run import AWAY, FLANK, GRID, Case, boundary, tip_at_depth
+from cysyk1999.studies.ridges.run import AWAY, FLANK, GRID, Case, tip_at_depth
 from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, energy, profile
 from fingerpad.measures.strokes import loaded
 from fingerpad.results import scene_of

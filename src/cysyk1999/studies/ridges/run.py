@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH
+from cysyk1999.studies.common.ridges import boundary
 from fingerpad import load_scene
 from fingerpad.planning.plan import plan
 from fingerpad.results import write_history
@@ -63,19 +64,6 @@ class Case:
 
     def __str__(self) -> str:
         return f"{self.height:g}_{self.friction:g}_{self.mesh}"
-
-
-def boundary(outline: Outline, ridges: Ridges | None, x: float) -> float:
-    """Depth (m) at which the epidermis ends at the lateral position `x` (m, near the apex, of the
-    boundary itself).
-    """
-    depth = outline.epidermis_thickness
-    if ridges is None:
-        return depth
-    pad = RidgedPad(outline, ridges)
-    for _ in range(8):
-        depth = pad.interface + float(pad.interface_shift(x / (1 - depth / outline.apex_radius)))
-    return depth
 
 
 def tip_at_depth(outline: Outline, phase: float) -> float:

@@ -1,6 +1,4 @@
-"""What must hold of a run whatever its answer is: measures that need no reference, and differences
-between two runs.
-"""
+"""Measures of a run that need no reference, and differences between two runs of a case."""
 
 from __future__ import annotations
 
@@ -10,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import xarray as xr
 
-from cysyk1999.studies.stability.hard_cases import Limits
+from cysyk1999.studies.stability.cases import Limits
 from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, states_found
 from fingerpad.simulation import Simulation
@@ -19,38 +17,32 @@ ENDS = ("force", "indentation_depth", "stored_energy", "contact_width", "tangent
 """What two runs of a case are compared by, at the ends of the legs."""
 
 
-class Held:
-    """What holds the body (steps, 2) N/m, asked after each step of a simulation: the forces at its
-    held nodes, summed.
-    """
+class Reactions:
+    """Forces (steps, 2) N/m that hold the body, summed over its held nodes after each step."""
 
-    def __init__(self, made: Simulation):
-        self._made, self._found = made, []
+    def __init__(self, simulation: Simulation):
+        self.simulation, self.forces = simulation, []
 
     def __call__(self, progress: Mapping[str, float]) -> None:
-        body = self._made.body
-        self._found.append(
-            np.where(body.space.fixed, body.internal_force(), 0.0).sum(0) / self._made.share
-        )
+        body, share = self.simulation.body, self.simulation.share
+        held = np.where(body.space.fixed, body.internal_force(), 0.0)
+        self.forces.append(held.sum(0) / share)
 
     def balance(self, history: xr.Dataset) -> float:
-        """Largest difference to what pushes it over the largest push; of half a pad, whose middle
-        is held too, upwards only.
+        """Largest difference between reaction and load, over the largest load.
+
+        The middle of half a pad is held sideways too: there only upward forces are compared.
         """
-        pushed = np.column_stack([history.tangential_force, history.force])[
-            history.interpolated.values == 0
-        ][1:]
-        apart = np.abs(np.array(self._found)[: len(pushed)] - pushed)[
-            :, 1 if self._made.mesh.half else 0 :
-        ]
-        most = np.abs(pushed).max(initial=0.0)
-        return float(apart.max() / most) if most else np.nan
+        solved = history.isel(time=np.flatnonzero(history.interpolated.values == 0)[1:])
+        load = np.column_stack([solved.tangential_force, solved.force])
+        apart = np.abs(np.array(self.forces)[: len(load)] - load)
+        most = np.abs(load).max(initial=0.0)
+        first = 1 if self.simulation.mesh.half else 0
+        return float(apart[:, first:].max() / most) if most else np.nan
 
 
 def mirrored(history: xr.Dataset) -> float:
-    """Largest difference of the skin's displacement to its mirror image over the largest
-    displacement, at any time.
-    """
+    """Largest difference of the skin's displacement to its mirror image, over the largest one."""
     x, y = history.skin_displacement_x.values, history.skin_displacement_y.values
     apart = max(np.abs(x + x[:, ::-1]).max(), np.abs(y - y[:, ::-1]).max())
     return float(apart / max(np.hypot(x, y).max(), 1e-300))
@@ -62,21 +54,17 @@ def iterations(history: xr.Dataset) -> float:
 
 
 def measures(history: xr.Dataset) -> dict[str, float]:
-    """What a history tells of the run that made it (their meaning:
-    :data:`cysyk1999.studies.stability.picture.MEASURES`).
-    """
+    """Measures of a history, explained in :data:`cysyk1999.studies.stability.picture.MEASURES`."""
     ends = leg_ends(history)
-    work = np.abs(history.external_work.values)
-    kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
-    pressures = zip(
-        ends.contact_pressure.values, ends.contact_pressure_smoothed.values, strict=True
-    )
-    boards = [checkerboard(pressure, smoothed) for pressure, smoothed in pressures]
+    work = history.external_work
+    stored = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
+    pressures = ends.contact_pressure.values, ends.contact_pressure_smoothed.values
+    boards = [checkerboard(*pair) for pair in zip(*pressures, strict=True)]
+    factorisations = json.loads(history.attrs["cost"])["factorisations"]
     return {
         "cuts": float(history.cutbacks.sum()),
-        "factorisations": json.loads(history.attrs["cost"])["factorisations"]
-        / max(states_found(history), 1),
-        "energy": float(np.abs(history.external_work - kept).max() / max(work.max(), 1e-300)),
+        "factorisations": factorisations / max(states_found(history), 1),
+        "energy": float(np.abs(work - stored).max() / max(np.abs(work).max(), 1e-300)),
         "complementarity": float(history.complementarity_error.max()),
         "det_f": float(history.min_detF.min()),
         "checkerboard": max((b for b in boards if np.isfinite(b)), default=np.nan),
@@ -84,16 +72,19 @@ def measures(history: xr.Dataset) -> dict[str, float]:
 
 
 def difference(one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = ENDS) -> float:
-    """Largest difference at the ends of the legs, each quantity over its largest value there; a
-    side force over no less than a tenth of the force: a thousandth of that is a tenth of what
-    forces must balance within.
+    """Largest difference at the ends of the legs, each quantity over its largest value there.
+
+    A side force is taken over no less than a tenth of the force: a thousandth of that is a tenth
+    of what forces must balance within.
     """
     ends = leg_ends(one), leg_ends(other)
-    found = {name: [end[name].values for end in ends] for name in names}
-    scale = {name: max(np.abs(a).max(), 1e-12) for name, (a, _) in found.items()}
+    scale = {name: max(float(np.abs(ends[0][name]).max()), 1e-12) for name in names}
     if scale.keys() >= {"force", "tangential_force"}:
         scale["tangential_force"] = max(scale["tangential_force"], 0.1 * scale["force"])
-    return max(float(np.abs(a - b).max() / scale[name]) for name, (a, b) in found.items())
+    apart = (
+        np.abs(ends[0][name].values - ends[1][name].values).max() / scale[name] for name in scale
+    )
+    return float(max(apart))
 
 
 def excess(measured: Mapping[str, float], limits: Limits) -> dict[str, str]:

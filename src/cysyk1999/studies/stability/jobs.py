@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
-from cysyk1999.studies.stability.picture import PARTS, stability_picture
+from cysyk1999.studies.stability.cases import FILES, PARTS
+from cysyk1999.studies.stability.picture import stability_picture
 from cysyk1999.studies.stability.run import stability_method
 
 if TYPE_CHECKING:
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 @part("stability")
 def stability(project: Project) -> Iterator[Job]:
     """How stable the method is in hard cases, beside simpler methods: a heat map and a table."""
-    read, data = {"files": [project.thesis_specimen()]}, []
+    cases = [project.at(f"config/stability/{name}") for name in FILES]
+    read, data = {"files": [project.thesis_specimen(), *cases]}, []
     for method, parts in PARTS.items():
         name = method.replace(" ", "_")
         for k in range(1, parts + 1):

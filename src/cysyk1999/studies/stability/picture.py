@@ -14,17 +14,8 @@ from matplotlib.figure import Figure
 
 from cysyk1999.publishing.style import GREY, INK, PAGE_WIDTH, TALLEST, sheet, styled
 from cysyk1999.publishing.write import publish, publish_table
+from cysyk1999.studies.stability.cases import DEFAULT, METHODS, TEACHING
 
-METHODS = {
-    "default": "this package",
-    "full Q1": "full Q1 elements (lock)",
-    "plain P2": "plain P2 elements (oscillate)",
-    "plain Newton": "plain Newton (not lagged)",
-}
-"""Method -> its title in the picture; the first is the one that is offered."""
-DEFAULT, *TEACHING = METHODS
-PARTS = {method: 4 if method == DEFAULT else 1 for method in METHODS}
-"""In how many processes a method's runs are made: the default one is run several times a case."""
 MEASURES = {
     "completed": ("completed", "reached the end of the motion"),
     "cuts": ("step cuts", "times a load step had to be halved, in all"),
@@ -96,27 +87,19 @@ def long(frame: pd.DataFrame) -> pd.DataFrame:
     (above 1: beyond it).
     """
     rows = []
-    for row in frame.to_dict("records"):
-        if row["outcome"] == "does not apply":
-            continue
+    for row in frame[frame["outcome"] != "does not apply"].to_dict("records"):
+        known = {key: row[key] for key in ("group", "case", "method")} | {"outcome": _outcome(row)}
         for name in MEASURES if row["method"] == DEFAULT else OF_TEACHING:
             value, limit = row.get(name, np.nan), row.get(f"limit {name}", np.nan)
             if name == "completed":
-                limit = 1.0
-                share = 0.0 if value else np.inf
+                limit, share = 1.0, 0.0 if value else np.inf
             elif name == "det_f":
                 share = limit / max(value, 1e-9)
+            elif np.isfinite(limit):
+                share = value / max(limit, 0.5 if name == "cuts" else 1e-12)
             else:
-                share = (
-                    value / max(limit, 0.5 if name == "cuts" else 1e-12)
-                    if np.isfinite(limit)
-                    else np.nan
-                )
-            rows.append(
-                {key: row[key] for key in ("group", "case", "method")}
-                | {"outcome": _outcome(row)}
-                | {"measure": name, "value": value, "limit": limit, "share": share}
-            )
+                share = np.nan
+            rows.append(known | {"measure": name, "value": value, "limit": limit, "share": share})
     return pd.DataFrame(rows)
 
 
@@ -135,13 +118,15 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
         out[MEASURES[name][0]] = default.get(name, np.nan)
     for method in TEACHING:
         rows = frame[frame["method"] == method].set_index("case").reindex(default.index)
-        out[method] = [_ended(row) for row in rows.to_dict("records")]
+        out[method] = [_ending(row) for row in rows.to_dict("records")]
     shares = long(frame[frame["method"] == DEFAULT]).set_index(["case", "measure"])["share"]
     out["nearest to its limit"] = [_nearest(shares[case]) for case in out.index]
     texts = {"message": "said", "saved": "last state saved", "relaxed": "stable when relaxed"}
     for name, column in texts.items():
         out[column] = default.get(name, pd.Series("", default.index)).astype(object).fillna("")
-    out["how it ended"] = [_told(row) for row in out.to_dict("records")]
+    said = ": " + out["said"].where(out["said"] != "")
+    cure = "; stable with " + out["stable when relaxed"].where(out["stable when relaxed"] != "")
+    out["how it ended"] = out["outcome"] + said.fillna("") + cure.fillna("")
     out.insert(0, "case", out.index)
     out.insert(0, "no.", default["number"])
     out.attrs["columns"] = [
@@ -156,15 +141,8 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
 
 def _nearest(shares: pd.Series) -> str:
     """The measure that has used up most of its limit, and how much."""
-    found = shares[np.isfinite(shares)]
-    return f"{MEASURES[found.idxmax()][0]}: {found.max():.0%}" if len(found) else ""
-
-
-def _told(row: dict) -> str:
-    """How the default method ended, with what it said and what cures it."""
-    parts = [row["outcome"], f": {row['said']}" if row["said"] else ""]
-    cure = row["stable when relaxed"]
-    return "".join([*parts, f"; stable with {cure}" if cure else ""])
+    known = shares[np.isfinite(shares)]
+    return f"{MEASURES[known.idxmax()][0]}: {known.max():.0%}" if len(known) else ""
 
 
 def _outcome(row: dict) -> str:
@@ -172,24 +150,23 @@ def _outcome(row: dict) -> str:
     return "wrong" if row["off"] > OFF else row["outcome"]
 
 
-def _ended(row: dict) -> str:
+def _ending(row: dict) -> str:
     """How a teaching method ended, in a few words."""
-    said = row["message"] if isinstance(row["message"], str) else ""
+    message = row["message"] if isinstance(row["message"], str) else ""
     if _outcome(row) == "wrong":
-        return f"wrong: off by {row['off']:.0%}" + (
-            f"; {said}" if row["outcome"] == "unsound" else ""
-        )
-    return f"{row['outcome']}: {said}" if said else str(row["outcome"])
+        message = message if row["outcome"] == "unsound" else ""
+        return f"wrong: off by {row['off']:.0%}" + (message and f"; {message}")
+    return str(row["outcome"]) + (message and f": {message}")
 
 
 def tally(part: pd.DataFrame) -> list[str]:
     """How many cases of a method ended how; ``part``: its rows of :func:`long`."""
     ends = part.drop_duplicates("case")["outcome"].value_counts()
-    said = [f"{ends[outcome]} {text}" for outcome, text in OUTCOMES.items() if outcome in ends]
-    return said if "unsound" in ends or "wrong" in ends else [*said, "none silent"]
+    texts = [f"{ends[outcome]} {text}" for outcome, text in OUTCOMES.items() if outcome in ends]
+    return texts if "unsound" in ends or "wrong" in ends else [*texts, "none silent"]
 
 
-# -- the picture --------------------------------------------------------------------------------------------------------------
+# -- the picture ---
 
 _LEFT, _RIGHT, _TOP, _BOTTOM = 1.0, 0.22, 1.3, 1.12  # inch beside the panels
 _GAP = 0.17  # inch between them, where their titles stand
@@ -205,12 +182,12 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     fig = sheet("Stability in hard cases", [], height, laid_out=False)
     picked = int((~cases.index.str.match(r"\d+: ")).sum())
     intro = (
-        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md "
-        f"lists them by number): {picked} "
+        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md lists "
+        f"them by number): {picked} "
         "picked by hand, and combinations in which every\ntwo hard levels of eleven factors meet, "
         "by stimulus. A row is a "
-        "measure of how the run went: its worst value over the worst that still counts\nas "
-        "stable. The methods below differ "
+        "measure of how the run went: its worst value over the worst that still counts\nas stable. "
+        "The methods below differ "
         "from this package in one thing each."
     )
     fig.text(

@@ -1,71 +1,61 @@
-"""What a failed run's advice says to relax, and the case with that relaxed: so that the advice can
-be tried.
-"""
+"""A case with what its message advises to relax, so that the advice can be tried."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import reduce
+from functools import partial, reduce
 from typing import Any
 
-from cysyk1999.studies.stability.hard_cases import Case, cylinder
+from cysyk1999.studies.common.documents import cylinder
+from cysyk1999.studies.stability.cases import Case
 from fingerpad.mechanics.stepping import hard_here
 
-_TARGETS = ("press_to_force", "press_to_depth")
-_SHARES = (0.5, 0.2, 0.04)
 HERE = hard_here(())
+Change = Callable[[Case], Case]
 
 
-def _loaded(share: float) -> Callable[[Case], Case]:
+def _with(case: Case, **keys: Any) -> Case:
+    return replace(case, scene=case.scene | keys, may_fail=False)
+
+
+def _loaded(case: Case, share: float) -> Case:
     """The case with so much of its forces and depths."""
-
-    def less(text: str) -> str:
-        value, unit = text.split()
-        return f"{share * float(value):g} {unit}"
-
-    def change(case: Case) -> Case:
-        legs = [
-            {key: less(value) if key in _TARGETS else value for key, value in leg.items()}
-            for leg in case.scene["motion"]
-        ]
-        return _with(case, motion=legs)
-
-    return change
+    motion = []
+    for leg in case.scene["motion"]:
+        leg = dict(leg)
+        for target in {"press_to_force", "press_to_depth"} & leg.keys():
+            value, unit = leg[target].split()
+            leg[target] = f"{share * float(value):g} {unit}"
+        motion.append(leg)
+    return _with(case, motion=motion)
 
 
-def _of_layers(**keys: Any) -> Callable[[Case], Case]:
-    """The case with these keys in all its layers; with none of their own moduli where nothing is
-    said.
-    """
-
-    def change(case: Case) -> Case:
-        specimen = dict(case.scene.get("specimen", {}))
-        part = next((part for part in ("layers", "slab", "half_round") if part in specimen), None)
-        if part is None:
-            return case
-        usual = keys or {"youngs_modulus": "15 kPa"}
-        layers = specimen[part] if part == "layers" else specimen[part]["layers"]
-        if isinstance(layers, dict):
-            skin = {} if keys else {"epidermis": {"youngs_modulus": "0.15 MPa"}}
-            changed: Any = {
-                name: layer | usual | skin.get(name, {}) for name, layer in layers.items()
-            }
-        else:
-            changed = [layer | usual for layer in layers]
-        return _with(
-            case,
-            specimen=specimen
-            | {part: changed if part == "layers" else specimen[part] | {"layers": changed}},
-        )
-
-    return change
+def _usual_layers(case: Case) -> Case:
+    """The case with the usual moduli in layers that have their own."""
+    case = _layers(case, youngs_modulus="15 kPa")
+    specimen = case.scene.get("specimen", {})
+    if "epidermis" not in specimen.get("layers", {}):
+        return case
+    skin = specimen["layers"]["epidermis"] | {"youngs_modulus": "0.15 MPa"}
+    return _with(case, specimen=specimen | {"layers": specimen["layers"] | {"epidermis": skin}})
 
 
-def _without(key: str) -> Callable[[Case], Case]:
-    return lambda case: replace(
-        case, scene={k: v for k, v in case.scene.items() if k != key}, may_fail=False
-    )
+def _layers(case: Case, **keys: Any) -> Case:
+    """The case with these keys in all its layers."""
+    specimen = case.scene.get("specimen", {})
+    if "layers" in specimen:
+        layers = {name: layer | keys for name, layer in specimen["layers"].items()}
+        return _with(case, specimen=specimen | {"layers": layers})
+    for shape in {"slab", "half_round"} & specimen.keys():
+        layers = [layer | keys for layer in specimen[shape]["layers"]]
+        return _with(case, specimen=specimen | {shape: specimen[shape] | {"layers": layers}})
+    return case
+
+
+def _frictionless(case: Case) -> Case:
+    scene = {key: value for key, value in case.scene.items() if key != "friction"}
+    return replace(case, scene=scene, may_fail=False)
 
 
 def _pressed_only(case: Case) -> Case:
@@ -85,58 +75,64 @@ def _steps(case: Case) -> Case:
     return replace(case, steps=8 * case.steps_per_leg)
 
 
-def _meshed(accuracy: Any) -> Callable[[Case], Case]:
-    return lambda case: _with(replace(case, mesh=None), accuracy=accuracy)
+def _thesis_mesh(case: Case) -> Case:
+    return _with(replace(case, mesh=None), accuracy="thesis")
 
 
-def _with(case: Case, **keys: Any) -> Case:
-    return replace(case, scene=case.scene | keys, may_fail=False)
+def _finite(case: Case) -> Case:
+    return _with(case, effects=case.scene["effects"] | {"finite_strain": "on"})
 
 
-ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
-    "smaller depth or force": tuple(
-        (f"load: {share:g} of it", _loaded(share)) for share in _SHARES
-    ),
-    "fillet": (("stimulus: rounded", _rounded),),
-    "smoothing": (("stimulus: smoothed", _rounded),),
-    "smaller steps": (("time: 8 times the steps", _steps),),
-    "more steps": (("time: 8 times the steps", _steps),),
-    "finer": (("mesh: planned for accuracy: thesis", _meshed("thesis")),),
+STEPS = {"time: 8 times the steps": _steps}
+MESH = {"mesh: planned for accuracy: thesis": _thesis_mesh}
+LOAD = {"load: 0.2 of it": partial(_loaded, share=0.2)}
+LAYERS = {"layers: usual": _usual_layers}
+ROUNDED = {"stimulus: rounded": _rounded}
+ADVICE: dict[str, dict[str, Change]] = {
+    "smaller depth or force": {
+        f"load: {share:g} of it": partial(_loaded, share=share) for share in (0.5, 0.2, 0.04)
+    },
+    "fillet": ROUNDED,
+    "smoothing": {"stimulus: smoothed": _rounded},
+    "smaller steps": STEPS,
+    "more steps": STEPS,
+    "finer": MESH,
 }
-"""Words of an advice -> what they say to relax, in the order in which it is tried."""
-
-
-HARD: dict[str, tuple[str, Callable[[Case], Case]]] = {
-    "times as stiff": ("layers: usual", _of_layers()),
-    "hardly stiffer": ("layers: usual", _of_layers()),
-    "Poisson's ratio": ("Poisson's ratio: 0.48", _of_layers(poisson_ratio=0.48)),
-    "a force of": ("load: 0.2 of it", _loaded(0.2)),
-    "a depth of": ("load: 0.2 of it", _loaded(0.2)),
-    "a true edge": ("stimulus: rounded", _rounded),
-    "as sharp as": ("stimulus: rounded", _rounded),
-    "corners or bumps": ("stimulus: rounded", _rounded),
-    "friction": ("friction: none", _without("friction")),
-    "the law": ("law: neo-Hooke", _of_layers(law="neo_hooke")),
-    "small strain": (
-        "strain: finite",
-        lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"}),
-    ),
-    "a stroke": ("motion: pressed only", _pressed_only),
-    "not refined": ("mesh: planned for accuracy: thesis", _meshed("thesis")),
+"""Words of an advice -> changes that follow it, by name, in the order in which they are tried."""
+HARD: dict[str, dict[str, Change]] = {
+    "times as stiff": LAYERS,
+    "hardly stiffer": LAYERS,
+    "Poisson's ratio": {"Poisson's ratio: 0.48": partial(_layers, poisson_ratio=0.48)},
+    "a force of": LOAD,
+    "a depth of": LOAD,
+    "a true edge": ROUNDED,
+    "as sharp as": ROUNDED,
+    "corners or bumps": ROUNDED,
+    "friction": {"friction: none": _frictionless},
+    "the law": {"law: neo-Hooke": partial(_layers, law="neo_hooke")},
+    "small strain": {"strain: finite": _finite},
+    "a stroke": {"motion: pressed only": _pressed_only},
+    "not refined": MESH,
 }
-"""Words of what is hard in a scene -> what they say to ask less of."""
+"""Words of what is hard in a scene -> the change that makes it easier, by name."""
+
+
+def _named(known: dict[str, dict[str, Change]], text: str) -> dict[str, Change]:
+    """Changes whose words stand in a text."""
+    return {
+        name: change for words in known if words in text for name, change in known[words].items()
+    }
 
 
 def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
-    """What the message of a failed run says to relax, in words, and the case with it relaxed; a
-    wrong one wants a finer mesh.
+    """What the message of a failed run advises to relax, in words, and the case with it relaxed.
 
-    One thing after the other, and last all at once that is hard.
+    One thing after the other, and last all that is hard at once. A wrong result, whose message has
+    no advice, is tried on a finer mesh.
     """
     advice, _, hard = message.partition(HERE)
     advice = advice.partition("; try ")[2] or "a finer mesh"
-    advised = [each for words, changes in ADVICE.items() if words in advice for each in changes]
-    less = dict(each for words, each in HARD.items() if words in hard)
-    yield from ((said, change(case)) for said, change in (dict(advised) | less).items())
-    if len(less) > 1:
-        yield "all that is hard", reduce(lambda easier, change: change(easier), less.values(), case)
+    easier = _named(HARD, hard)
+    yield from ((name, change(case)) for name, change in (_named(ADVICE, advice) | easier).items())
+    if len(easier) > 1:
+        yield "all that is hard", reduce(lambda less, change: change(less), easier.values(), case)
