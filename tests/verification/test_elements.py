@@ -5,11 +5,13 @@ from decimal import Decimal, getcontext
 import numpy as np
 import pytest
 from meshes import KIND, mapped, nodes_of, rectangle
+from numba import njit
 from pressing import press
 from problems import lame_constants, make_body, solve
 
 from fingerpad.laws import LAWS, NEO_HOOKE, assign
 from fingerpad.laws.law import isochoric
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import smoothed_pressure
@@ -254,13 +256,7 @@ def check_factor(step=0.0):
 
 
 def compiled_factor(values):
-    from numba import njit
-
-    from fingerpad.mechanics import (
-        kernels,
-    )  # what it says of isochoric is what compiled loops go by
-
-    @njit(**kernels._JIT)
+    @njit(**kernels._JIT | {"cache": False})
     def each(values, out):
         for k in range(len(values)):
             out[k] = isochoric(values[k])

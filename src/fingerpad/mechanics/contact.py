@@ -23,8 +23,10 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
+from scipy.linalg import eigvalsh_tridiagonal, ldl
+from scipy.linalg.lapack import dpotrf, dpotri
 
-from fingerpad.mechanics import compiled, dense
+from fingerpad.mechanics import kernels
 
 
 class ContactError(RuntimeError):
@@ -80,7 +82,7 @@ class Zone:
         a matrix: (nd nz, n).
         """
         out = np.empty((len(directions) * len(self), matrix.shape[1]))
-        compiled.at_points(
+        kernels.at_points(
             self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out
         )
         return out
@@ -98,7 +100,7 @@ class Zone:
         ``direction`` (nz, 2).
         """
         out = matrix.copy()
-        compiled.bend(out, self._columns, self._values, direction, weight)
+        kernels.bend(out, self._columns, self._values, direction, weight)
         return out
 
     @property
@@ -206,11 +208,14 @@ def _inverse(matrix):
     """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is,
     LU otherwise.
     """
-    factor = dense.cholesky(matrix)
-    if factor is None:
+    if not len(matrix):
+        return matrix, True
+    # LAPACK reads columns: its upper triangle is the lower one of our rows
+    factor, failed = dpotrf(np.ascontiguousarray(matrix).T, lower=0)
+    if failed:
         return np.linalg.inv(matrix), False
-    inverse = dense.inverse(factor)
-    compiled.mirror(inverse)
+    inverse = dpotri(factor, lower=0, overwrite_c=1)[0].T
+    kernels.mirror(inverse)
     return inverse, True
 
 
@@ -448,7 +453,15 @@ def stable(matrix, compliance, active):
     eigenvalues as ``matrix``.
     """
     inside = compliance[np.ix_(active, active)]
-    return dense.negative_eigenvalues(matrix) == dense.negative_eigenvalues((inside + inside.T) / 2)
+    return _negative_eigenvalues(matrix) == _negative_eigenvalues((inside + inside.T) / 2)
+
+
+def _negative_eigenvalues(matrix: np.ndarray) -> int:
+    """Their number, of a symmetric matrix: that of D in L D L^T, by Sylvester's law of inertia."""
+    if not len(matrix):
+        return 0
+    d = ldl(matrix)[1]
+    return int(np.sum(eigvalsh_tridiagonal(np.diag(d), np.diag(d, 1)) < 0))
 
 
 def _pivot(compliance, offset, active):

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.mechanics import compiled
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.contact import (
     ContactError,
     ContactStep,
@@ -279,7 +279,7 @@ def _exchange(
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
         system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
-        compiled.exchanged(a, share, on, stick, system)
+        kernels.exchanged(a, share, on, stick, system)
         needed = offset if bound is None else offset + a[:, n:] @ given
         right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:

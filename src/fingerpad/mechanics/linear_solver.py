@@ -11,15 +11,17 @@ SuperLU gives the same answers, slower.
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
-from typing import TYPE_CHECKING
+from functools import cache
+from pathlib import Path
 
 import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.sparse import csr_matrix, triu
+from scipy.sparse.linalg import splu
 
-from fingerpad.mechanics import dense
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
+from fingerpad.processes import threads
 
 
 class FactorisationError(RuntimeError):
@@ -97,15 +99,25 @@ class SymmetricPattern:
 
     def matrix(self, data: np.ndarray) -> csr_matrix:
         """The full symmetric matrix (both triangles) as CSR."""
-        import scipy.sparse as sp  # here, for it is slow to import
+        upper = csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
+        return (upper + triu(upper, 1).T).tocsr()
 
-        upper = sp.csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
-        return (upper + sp.triu(upper, 1).T).tocsr()
+
+@cache
+def _mkl() -> ctypes.CDLL | None:
+    """Intel's Math Kernel Library with as many threads as this process may use, if installed."""
+    libraries = sorted(Path(sys.prefix, "lib").glob("libmkl_rt.so*"))
+    if not libraries:
+        return None
+    library = ctypes.CDLL(str(libraries[0]))
+    library.MKL_Set_Num_Threads(ctypes.c_int(threads()))
+    return library
 
 
 def pardiso_available() -> bool:
-    """Whether there is PARDISO, and it is wanted."""
-    return dense.mkl() is not None
+    """Whether PARDISO is installed and FINGERPAD_LINEAR_SOLVER does not name another solver."""
+    wanted = os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso"
+    return wanted and _mkl() is not None
 
 
 _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fault
@@ -121,7 +133,7 @@ class PardisoCondensation:
     name = "pardiso"
 
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
-        self._library = dense.mkl()
+        self._library = _mkl()
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         if np.any(np.diff(self.condensed) <= 0):
             raise ValueError("condensed equations must be ascending")
@@ -247,8 +259,6 @@ class SuperLUCondensation:
         self.negative_pivots = 0
 
     def factor(self, data: np.ndarray) -> np.ndarray:
-        from scipy.sparse.linalg import splu  # here, for it is slow to import
-
         matrix = self._pattern.matrix(data).tocsc()
         i, c = self._interior, self.condensed
         try:
@@ -300,12 +310,13 @@ class Narrowed:
         if kept.all():
             self.schur = schur
             return True
-        factor = dense.cholesky(schur[np.ix_(rest, rest)])
-        if factor is None:
+        try:
+            self._factor = cho_factor(schur[np.ix_(rest, rest)], check_finite=False)
+        except LinAlgError:
             return False
-        self._factor, self._coupling = factor, np.asfortranarray(schur[np.ix_(rest, kept)])
-        self._answer = dense.solved(factor, self._coupling)
-        self.schur = schur[np.ix_(kept, kept)] - self._coupling.T @ self._answer
+        coupling = schur[np.ix_(rest, kept)]
+        self._answer = cho_solve(self._factor, coupling)
+        self.schur = schur[np.ix_(kept, kept)] - coupling.T @ self._answer
         return True
 
     def forward(self, right: np.ndarray) -> np.ndarray:
@@ -314,7 +325,7 @@ class Narrowed:
         if self._kept.all():
             return reduced
         rest = reduced[~self._kept]
-        self._alone = dense.solved(self._factor, rest)
+        self._alone = cho_solve(self._factor, rest)
         return reduced[self._kept] - self._answer.T @ rest
 
     def backward(self, values: np.ndarray) -> np.ndarray:

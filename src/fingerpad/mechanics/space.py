@@ -170,6 +170,11 @@ class Space:
         ]
         return np.array(runs, dtype=np.uint64).reshape(-1, 3)
 
+    @cached_property
+    def all_blocks(self) -> np.ndarray:
+        """:meth:`blocks` of all elements."""
+        return self.blocks(np.ones(len(self.cells), bool))
+
     def to_equations(self, field: np.ndarray) -> np.ndarray:
         """Values of a nodal field (n, 2) at the free equations (size,)."""
         return field[~self.fixed]
