@@ -20,7 +20,7 @@ from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import checkerboard, smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
-from fingerpad.mechanics.space import PlaneStrain, Space
+from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.stepping import (
     FOLDED,
     NewtonSettings,
@@ -224,14 +224,7 @@ class Simulation:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
-        space = Space(
-            mesh.points,
-            mesh.cells,
-            mesh.element,
-            fixed,
-            plan.element,
-            PlaneStrain(specimen.contact_length),
-        )
+        space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element)
         layers = [specimen.material(name) for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers],

@@ -216,13 +216,6 @@ class PardisoCondensation:
             raise FactorisationError("the tangent is singular")
         return schur.astype(float, copy=False) if nc else np.zeros((0, 0))
 
-    @property
-    def negative_pivots(self) -> int:
-        """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without
-        contact forces.
-        """
-        return int(self._parameters[22])
-
     def forward(self, right: np.ndarray) -> np.ndarray:
         """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for
         :meth:`backward`.
@@ -256,7 +249,6 @@ class SuperLUCondensation:
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray):
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         self._interior = np.setdiff1d(np.arange(pattern.size), self.condensed)
-        self.negative_pivots = 0
 
     def factor(self, data: np.ndarray) -> np.ndarray:
         matrix = self._pattern.matrix(data).tocsc()
@@ -341,8 +333,6 @@ def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool 
     """The best available solver for this pattern, condensing onto the given equations (nc,);
     ``single``: precision will do.
     """
-    return (
-        PardisoCondensation(pattern, condensed, single)
-        if pardiso_available()
-        else SuperLUCondensation(pattern, condensed)
-    )
+    if pardiso_available():
+        return PardisoCondensation(pattern, condensed, single)
+    return SuperLUCondensation(pattern, condensed)

@@ -499,16 +499,11 @@ class QuasiStatic:
         # the geometric term of the gaps is part of the tangent, and kept as long as the rest of it
         zone, tangent, flexible = self._flexible or (None, None, None)
         goal["flexible"] = flexible if zone is rows.zone and tangent is schur else None
-        geometry = rows.gap, rows.gradient, rows.curvature
-        before = self.contact_force[rows.place], self.active[rows.place]
+        known = schur, reduced, self.contact_force[rows.place], self.active[rows.place]
         if self.friction is None:
-            step = solve_contact(rows.zone, schur, reduced, *geometry, *before, **goal)
+            step = solve_contact(rows, *known, **goal)
         else:
-            goal |= {"partner": rows.partner}
-            motion = self._motion(rows.zone)
-            step = self.friction.solve(
-                rows.zone, rows.place, schur, reduced, *geometry, *before, motion, **goal
-            )
+            step = self.friction.solve(rows, *known, self._motion(rows.zone), **goal)
         self._flexible = None if step.softened else (rows.zone, schur, step.flexible)
         self._softened |= step.softened
         self._stiff = step.stiffness
@@ -873,8 +868,6 @@ class QuasiStatic:
             return about_profile
         if "inside out" in reason:
             return FOLDED
-        if "carry the force" in reason:
-            return "depth control, or a profile that stays above the pad"
         if "energy" in reason:
             fillet = "a fillet on sharp edges that pass over the skin"
             return f"smaller steps, a finer skin mesh, or {fillet}"
