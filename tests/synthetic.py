@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from cysyk1999.measures.errors import Companion
-from fingerpad.results import FRICTION_VARIABLES, VARIABLES, Arrays, add_snapshots, arrays, skin_arc
+from fingerpad.results import FRICTION_VARIABLES, VARIABLES, add_snapshots, history_of, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, PadMesh
@@ -125,7 +125,7 @@ def _made(
         "receptor_offset": np.array(receptors[1], float),
     }
     attributes = {"title": f"made up: {scene['name']}", "scene": scene}
-    return _filled(arrays(variables, {"time": time, **places, **at}, attributes).labelled())
+    return _filled(history_of(variables, {"time": time, **places, **at}, attributes))
 
 
 def _apex(x: np.ndarray, y: np.ndarray) -> int:
@@ -451,7 +451,7 @@ def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
     """The history with full fields: displacements (n, nodes, 2) m and mean stresses (n, elements)
     Pa at n times.
     """
-    whole, body, indenter = Arrays.of(data), mesh(), np.zeros((len(times), 2, 2))
+    whole, body, indenter = data.copy(), mesh(), np.zeros((len(times), 2, 2))
     add_snapshots(
         whole,
         times,
@@ -463,7 +463,7 @@ def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
         body.regions,
         indenter,
     )
-    return whole.labelled()
+    return whole
 
 
 def _dragged(data: xr.Dataset, times: np.ndarray) -> xr.Dataset:

@@ -70,7 +70,7 @@ def solver(monkeypatch):
         types.ModuleType("fingerpad.simulation"),
         types.ModuleType("fingerpad.results"),
     )
-    simulation.solve = simulate
+    simulation.simulate = simulate
     results.summary = lambda dataset: SUMMARY
     results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="netcdf4")
     results.write_vtu = lambda dataset, directory: write_text(
@@ -450,7 +450,7 @@ def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, mon
         warnings.warn("a library's warning", RuntimeWarning, stacklevel=1)
         raise ZeroDivisionError("nobody has thought\nof this")
 
-    monkeypatch.setattr(sys.modules["fingerpad.simulation"], "solve", broken)
+    monkeypatch.setattr(sys.modules["fingerpad.simulation"], "simulate", broken)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 1
     out, err = capsys.readouterr()

@@ -33,13 +33,13 @@ COARSE = {"skin_edge": "0.8 mm", "steps": 2}
 @pytest.fixture(scope="module")
 def histories():
     """Two results of one scene that differ: what was there, and what comes."""
-    from fingerpad.simulation import solve
+    from fingerpad.simulation import simulate
 
     scenes = [
         changed(motion=[{"press_to_force": force, "rate": "40 gf/s"}], accuracy=COARSE)
         for force in ("5 gf", "10 gf")
     ]
-    return [solve(fingerpad.load_scene(scene), fields=True) for scene in scenes]
+    return [simulate(fingerpad.load_scene(scene), fields=True) for scene in scenes]
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def run(tmp_path, histories, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
     (tmp_path / "elsewhere").mkdir()
     result = types.SimpleNamespace(comes=histories[0])
-    monkeypatch.setattr(fingerpad.simulation, "solve", lambda *_, **__: result.comes)
+    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: result.comes)
 
     def run(*options):
         return main(["run", str(scene), "--out", str(out), "--quiet", "--vtu", *options])
@@ -159,7 +159,7 @@ def test_a_file_that_appears_while_a_run_goes_on_stays(run, capsys, monkeypatch)
         (run.out / "history.nc").write_text("somebody else's")
         return run.result.comes
 
-    monkeypatch.setattr(fingerpad.simulation, "solve", solve)
+    monkeypatch.setattr(fingerpad.simulation, "simulate", solve)
     assert run() == 3
     err = capsys.readouterr().err
     assert "'history.nc' has come into it meanwhile" in err and err.count("\n") == 1
@@ -168,7 +168,7 @@ def test_a_file_that_appears_while_a_run_goes_on_stays(run, capsys, monkeypatch)
 
 
 def test_a_folder_without_room_is_refused_before_anything_is_solved(run, capsys, monkeypatch):
-    monkeypatch.setattr(fingerpad.simulation, "solve", lambda *_, **__: pytest.fail("solved"))
+    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: pytest.fail("solved"))
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=1e5))
     run.restore()
     assert run() == 2
@@ -453,13 +453,13 @@ def test_a_full_and_a_read_only_disk(disk, run, tmp_path, capsys, monkeypatch):
         (disk / "filler").write_bytes(bytes(shutil.disk_usage(disk).free - 40_000))
         return run.result.comes
 
-    monkeypatch.setattr(fingerpad.simulation, "solve", solve)
+    monkeypatch.setattr(fingerpad.simulation, "simulate", solve)
     assert main(words) == 3
     err = capsys.readouterr().err
     assert "No space left" in err and err.count("\n") == 1 and files(disk).keys() == {"filler"}
     assert files(re.search(r"these results are in '(.*)'", err)[1]) == run.after
     (disk / "filler").unlink()
-    monkeypatch.setattr(fingerpad.simulation, "solve", lambda *_, **__: run.result.comes)
+    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: run.result.comes)
     assert main(words) == 0 and files(disk / "out") == run.after
     libc = ctypes.CDLL(None)
     libc.umount2(str(disk).encode(), 2)
@@ -478,7 +478,7 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
     from cysyk1999.workflow.jobs import simulate
 
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
-    monkeypatch.setattr(simulate, "solve", lambda *_, **__: histories[0])
+    monkeypatch.setattr(simulate, "simulate", lambda *_, **__: histories[0])
     monkeypatch.setattr(simulate, "read_pad_mesh", lambda *_: None)
     given = {"scenes": [scene], "accuracies": ["as_stated"], "meshes": ["own"], "strides": ["1"]}
     job = types.SimpleNamespace(**given, histories=[str(folder / "history.nc")])

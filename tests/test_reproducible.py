@@ -11,8 +11,7 @@ import pytest
 from fingerpad import load_scene, simulate
 from fingerpad.cli import main
 from fingerpad.mechanics import linear_solver
-from fingerpad.results import Arrays, write_history
-from fingerpad.simulation import solve
+from fingerpad.results import write_history
 from wrong_scenes import changed, write
 
 pytestmark = pytest.mark.unit
@@ -52,7 +51,7 @@ def test_two_runs_of_a_scene_differ_in_costs_only(tmp_path):
 
 def test_a_history_is_written_as_the_same_bytes(tmp_path):
     """No date of its own, and no order that changes."""
-    history = Arrays.of(solve(load_scene(SCENE)))
+    history = simulate(load_scene(SCENE))
     for name in ("one.nc", "two.nc"):
         write_history(history, tmp_path / name)
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()

@@ -6,6 +6,7 @@ import errno
 import json
 import shutil
 import types
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,17 +16,15 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import meshio
-import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 from scipy.spatial import cKDTree
 
+import fingerpad
 from fingerpad import load_scene, plan, simulate
-from fingerpad.files import write_atomically
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.receptors.material_points import MaterialPoints
-from fingerpad.receptors.respond import respond
 from fingerpad.results import (
     COORDINATES,
     FRICTION_VARIABLES,
@@ -170,20 +169,6 @@ def test_round_trip(run, tmp_path):
     assert [path.name for path in (tmp_path / "deep").iterdir()] == ["history.nc"]
 
 
-def test_only_what_is_mostly_zero_is_packed(run, tmp_path):
-    """Mutants: all is; nothing is."""
-    history, path = run[3].copy(), tmp_path / "history.nc"
-    history["contact_pressure"] = history["contact_pressure"] * (history["skin_x"] > 2e-3)
-    write_history(history, path)
-    with netCDF4.Dataset(path) as file:
-        packed = {
-            name: file[name].filters()["zlib"]
-            for name in ("contact_pressure", "skin_displacement_y")
-        }
-    assert packed == {"contact_pressure": True, "skin_displacement_y": False}
-    np.testing.assert_array_equal(read_history(path).contact_pressure, history.contact_pressure)
-
-
 def test_snapshots_become_vtu(run, tmp_path):
     """Full fields open in ParaView: whole pad, moved nodes, layers, mean stress."""
     _, _, mesh, history, _ = run
@@ -306,21 +291,6 @@ def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):
         plt.close("all")
 
 
-def test_a_file_is_the_one_that_xarray_writes(run, tmp_path):
-    """Values, types, dimensions, coordinates and attributes, texts and impulses among them."""
-    history = run[3].merge(respond(run[3]))
-    write_history(history, tmp_path / "own.nc")
-    history.to_netcdf(tmp_path / "xarray.nc", engine="netcdf4")
-    own, theirs = read_history(tmp_path / "own.nc"), read_history(tmp_path / "xarray.nc")
-    xr.testing.assert_identical(own, theirs)
-    assert {name: own[name].dtype for name in own.variables} == {
-        name: theirs[name].dtype for name in theirs.variables
-    }
-    assert {name: type(value) for name, value in own.attrs.items()} == {
-        n: type(v) for n, v in theirs.attrs.items()
-    }
-
-
 def test_a_summary_names_its_receptors(run):
     """Every energy of a summary stands beside depth and offset; of very many receptors only the
     history speaks.
@@ -361,28 +331,15 @@ def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
     left.
     """
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
-    monkeypatch.setattr(
-        netCDF4,
-        "Dataset",
-        lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")),
-    )
+
+    def fails(history, path, **_):
+        Path(path).write_text("half")
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fails)
     with pytest.raises(OSError, match="No space left") as caught:
         write_history(run[3], tmp_path / "history.nc")
     assert caught.value.errno == errno.ENOSPC and not list(tmp_path.iterdir())
-
-
-def test_nothing_half_written(tmp_path):
-    """A writer that fails leaves no file, and what stood there stays."""
-    target = tmp_path / "out.txt"
-    target.write_text("before")
-
-    def broken(path):
-        path.write_text("half")
-        raise RuntimeError("power cut")
-
-    with pytest.raises(RuntimeError):
-        write_atomically(target, broken)
-    assert target.read_text() == "before" and list(tmp_path.iterdir()) == [target]
 
 
 def test_without_viscosity_there_is_one_strain_energy():
@@ -427,3 +384,45 @@ def test_an_element_that_folds_at_a_receptor_ends_the_run(monkeypatch):
         and np.isfinite(kept.strain_energy_density).all()
     )
     assert stop.value.time == float(kept.time[-1])
+
+
+# --- the accessor and the names at the top --------------------------------------------------------
+
+
+def test_a_history_knows_its_plan_scene_force_and_errors(run):
+    scene, chosen, _, history, _ = run
+    known = history.fingerpad
+    assert known.scene == scene
+    assert known.plan == replace(chosen, predicted_cost_s=round(chosen.predicted_cost_s, 2))
+    assert float(known.force_N[-1]) == pytest.approx(20 * 9.80665e-3)
+    assert known.force_N.attrs["units"] == "N"
+    ends = [leg["estimated_error"] for leg in summary(history)["legs"]]
+    assert known.errors["legs"] == ends and known.errors["asked"] is None
+    assert known.errors["largest"] >= max(ends)
+
+
+def test_receptors_are_found_by_their_depth(run):
+    history = run[3]
+    for number, (depth, offset) in enumerate((d, x) for d in (6e-4, 9.15e-4) for x in (-5e-4, 0)):
+        at = history.fingerpad.receptor(depth=depth, offset=offset)
+        assert (float(at.receptor_depth), float(at.receptor_offset)) == (depth, offset), number
+    middle = history.fingerpad.receptor(depth=9.15e-4).strain_energy_density
+    np.testing.assert_array_equal(middle, history.strain_energy_density[:, 4])
+    with pytest.raises(KeyError, match="no receptor at depth 700 um, offset 0 mm"):
+        history.fingerpad.receptor(depth=7e-4)
+
+
+def test_public_names_are_at_the_top():
+    assert set(dir(fingerpad)) == {*fingerpad.HOMES, "__version__"}
+    stub = Path(fingerpad.__file__).with_name("__init__.pyi").read_text()
+    for name, home in fingerpad.HOMES.items():
+        assert getattr(fingerpad, name).__module__.startswith("fingerpad.")
+        assert f"from {home} import {name} as {name}" in stub
+
+
+def test_a_plan_is_readable(run):
+    said = str(run[1])
+    for name, effect in run[1].effects.items():
+        assert name.replace("_", " ") in said and effect.why.split()[0] in said
+    assert "expected error: " in said and "s of one core" in said
+    assert run[1]._repr_html_().startswith("<table>")

@@ -16,8 +16,8 @@ from fingerpad.measures.features import (
     centre_pressure,
     energy,
 )
-from fingerpad.measures.kept import Each
-from fingerpad.measures.measure import Together
+from fingerpad.measures.kept import LazyMapping
+from fingerpad.measures.measure import Runs
 
 pytestmark = pytest.mark.unit
 
@@ -53,7 +53,7 @@ def _with_centre(history, values):
     )
 
 
-# --- what is read ------------------------------------------------------------------------------------------
+# --- what is read ---------------------------------------------------------------------------------
 
 
 def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
@@ -70,24 +70,14 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
 
 def test_what_is_loaded_already_is_not_made_again(made, slow):
     assert st.loaded(slow) is slow
-    runs = Together(made)
+    runs = Runs(made)
     assert runs.strokes["stroke_10"] is runs.strokes["stroke_10"]
     assert runs.strokes["stroke_10"].identical(st.loaded(made["stroke_10"]))
 
 
 def test_to_ask_whether_there_is_a_result_does_not_open_it():
-    opened = Each(lambda name: pytest.fail(f"{name} was opened"), ["stroke_10"])
+    opened = LazyMapping(lambda name: pytest.fail(f"{name} was opened"), ["stroke_10"])
     assert "stroke_10" in opened and "stroke_20" not in opened
-
-
-def test_convexities_are_named_as_in_the_thesis_and_follow_one_another(made):
-    found = st.convexities(made["stroke_10"])
-    assert list(found) == ["26", "39", "52", "79", "105", "157", "210", "315"]
-    first, *_, last = found.values()
-    assert first.start == pytest.approx(8e-3) and first.end == pytest.approx(
-        8e-3 + 2 * 38.1e-3 * np.sin(np.radians(9))
-    )
-    assert last.end * 1e3 == pytest.approx(70.58, abs=0.01)
 
 
 def test_centre_node_is_under_the_point_that_it_is_dragged_back_to(slow):
@@ -176,13 +166,7 @@ def test_lag_recovers_a_shift(shift):
     assert found == pytest.approx(shift, abs=0.03e-3) and likeness > 0.99
 
 
-def test_lag_of_the_made_up_stroke_is_its_drag(made):
-    assert Measures.of(made)("lag_of_stepped", "stroke_sub_10") == pytest.approx(
-        0.9, abs=0.4
-    )  # stepped by 1 mm
-
-
-# --- trends: each holds in what is made for it, and fails in a mutant --------------------------------------
+# --- trends: each holds in what is made for it, and fails in a mutant -----------------------------
 
 
 def _follower(history, of):
@@ -358,7 +342,7 @@ def test_double_peaks_and_their_distance(made):
     assert not _holds(made, "TR41", **(twins | {"stroke_5": single})).holds
 
 
-# --- the moving picture --------------------------------------------------------------------------------------
+# --- the moving picture ---------------------------------------------------------------------------
 
 
 def test_animation_has_a_frame_a_snapshot_and_the_same_bytes_again(made, tmp_path):

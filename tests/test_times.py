@@ -68,28 +68,6 @@ def test_a_time_is_as_it_was_to_a_nanosecond_and_stays_in_files(history, tmp_pat
     assert all(leg["time_s"] == round(leg["time_s"], 6) for leg in summary(history)["legs"])
 
 
-def test_two_histories_of_different_steps_can_be_compared(history):
-    """Where their states are at the same times, as xarray aligns them."""
-    fewer = history.isel(time=slice(None, None, 2))
-    assert (history.force - fewer.force).sizes["time"] == fewer.sizes["time"]
-
-
-def test_what_takes_no_time_has_no_rate():
-    """A steady press before a stroke is no impulse of infinite rate."""
-    scene = {
-        "stimulus": {"shape": "cylinder", "radius": "5 mm"},
-        "motion": MOTIONS["steady press, slide in time"],
-    }
-    history = fingerpad.simulate(scene | {"accuracy": BY_HAND})
-    rates = fingerpad.respond(history)
-    assert float(rates.impulse_rate.max()) < 1e4
-    rates.sel(response_time=0.05, method="nearest")
-    with pytest.raises(ValueError, match="takes time"):
-        fingerpad.respond(
-            fingerpad.simulate(scene | {"motion": MOTIONS["all steady"], "accuracy": BY_HAND})
-        )
-
-
 @pytest.mark.parametrize("start", [0.0, 1.0, 1e4, 1e9])
 def test_times_are_apart_however_late(start):
     times = apart(np.array([start, start, start, start + 1.0, start + 1.0]))

@@ -2,14 +2,12 @@
 that are touched.
 """
 
-import json
-
 import numpy as np
 import pytest
 
 import fingerpad
 from fingerpad.cli import _error_line
-from fingerpad.planning.plan import plan, read_plan
+from fingerpad.planning.plan import plan
 from fingerpad.results import summary
 from fingerpad.scenes.scene import load_scene
 from own_meshes import SLAB, slab
@@ -142,7 +140,7 @@ def test_marks_are_of_each_leg(tmp_path):
     )
 
 
-# --- the end of the skin --------------------------------------------------------------------------------------------------
+# --- the end of the skin --------------------------------------------------------------------------
 
 ENDS = {
     # skin from, to (mm) of a slab from -10 to 10 mm; friction; is the end unbounded?
@@ -175,13 +173,3 @@ def test_the_plan_says_where_the_indenter_meets_the_skin(tmp_path):
     assert "meets the skin at x = 0, y = 5 mm" in said and "the end of the skin" in said
     slab(tmp_path / "slab.msh", 0.5e-3)
     assert "the end of the skin" not in " ".join(plan(SLAB(tmp_path / "slab.msh")).specimen)
-
-
-def test_a_plan_that_is_written_says_the_same(tmp_path):
-    scene = sampled(tmp_path, np.array([-4e-3, 0, 4e-3]), np.array([2e-3, 0, 2e-3]))
-    made = plan(scene)
-    made.write(tmp_path / "plan.json")
-    again = read_plan(tmp_path / "plan.json")
-    assert again.unbounded == made.unbounded and again.covers == made.covers
-    said = json.loads((tmp_path / "plan.json").read_text())
-    assert said["unbounded_peak"] and said["unbounded_at"] == ["the corner at x = 0 mm"]

@@ -1,42 +1,52 @@
 """The human fingerpad in touch: skin, contact and the strain energy that receptors see.
 
-Five verbs are the whole shallow interface; each is imported at its first use.
+Five functions do the work:
 
-- ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene``
-  (`fingerpad.scenes.scene`).
+- ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene``.
   ``plan``, ``simulate`` and ``sweep`` take the file or the dictionary too.
-- ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.planning.plan`).
-- ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
-- ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`
-  (`fingerpad.sweeps.engine`).
-- ``respond(history)``: impulse rates and impulses of its receptors (`fingerpad.receptors.respond`).
+- ``plan(scene)``: choose effects and discretisation, with reasons; it gives a ``Plan``.
+- ``simulate(scene)``: run it; it gives the history, an `xarray.Dataset`.
+- ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`.
+- ``respond(history)``: impulse rates and impulses of its receptors.
+
+``read_history``, ``read_plan`` and ``open_sweep`` read what was written; ``write_history`` writes a
+history and ``summary`` sums it up. ``history.fingerpad`` is the accessor of a history. The errors
+to catch are here too. Each name is imported at its first use.
 """
 
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from fingerpad.planning.plan import plan
-    from fingerpad.receptors.respond import respond
-    from fingerpad.scenes.scene import Scene, load_scene
-    from fingerpad.simulation import simulate
-    from fingerpad.sweeps.engine import sweep
-
-__all__ = ["Scene", "load_scene", "plan", "respond", "simulate", "sweep"]
 
 HOMES = {
+    "MeshError": "fingerpad.specimen.pad",
+    "NonConvergence": "fingerpad.mechanics.stepping",
+    "NotFinished": "fingerpad.sweeps.engine",
+    "OutlineError": "fingerpad.specimen.outline",
+    "Plan": "fingerpad.planning.plan",
+    "PlanError": "fingerpad.planning.plan",
+    "ReceptorError": "fingerpad.receptors.recovery",
+    "ResultError": "fingerpad.results",
     "Scene": "fingerpad.scenes.scene",
+    "SceneError": "fingerpad.documents",
+    "SweepError": "fingerpad.sweeps.engine",
     "load_scene": "fingerpad.scenes.scene",
+    "open_sweep": "fingerpad.sweeps.collect",
     "plan": "fingerpad.planning.plan",
+    "read_history": "fingerpad.results",
+    "read_plan": "fingerpad.planning.plan",
     "respond": "fingerpad.receptors.respond",
     "simulate": "fingerpad.simulation",
+    "summary": "fingerpad.results",
     "sweep": "fingerpad.sweeps.engine",
+    "write_history": "fingerpad.results",
 }
+"""Public name -> module it is in; type checkers read the same in ``__init__.pyi``."""
+
+__all__ = list(HOMES)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("fingerpad")
     if name not in HOMES:
@@ -45,4 +55,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return [*__all__, "__version__"]

@@ -308,7 +308,7 @@ def _run(options: argparse.Namespace) -> int:
 
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.results import summary, write_history, write_vtu
-    from fingerpad.simulation import solve
+    from fingerpad.simulation import simulate
 
     with _folder(out, scene, plan, options) as folder:
         _check_room(out, plan.result_bytes(scene, options.vtu))
@@ -317,7 +317,7 @@ def _run(options: argparse.Namespace) -> int:
                 _naming(options.scene, scene),
                 _progress(scene.name, quiet=options.quiet) as progress,
             ):
-                dataset = solve(scene, plan=plan, progress=progress, fields=options.vtu)
+                dataset = simulate(scene, plan=plan, progress=progress, fields=options.vtu)
         except NonConvergence as error:
             return _say(folder.rescue(error), NOT_COMPLETED)
         except KeyboardInterrupt as stop:
@@ -651,39 +651,8 @@ def _say(message: str, code: int) -> int:
 
 def _print_plan(scene: Scene, plan: Plan) -> None:
     from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
 
-    from fingerpad.planning.bounds import percent
-
-    console = Console(highlight=False)
-    effects = Table("effect", "", "why", title=f"Plan of {scene.name}", title_justify="left")
-    for name, effect in plan.effects.items():
-        state = Text("on", style="bold green") if effect.on else Text("off", style="dim")
-        effects.add_row(Text(name.replace("_", " ")), state, Text(str(effect.why)))
-    console.print(effects)
-    details = Table("discretisation", "")
-    for name, value in plan.discretisation.items():
-        details.add_row(
-            Text(name.replace("_", " ")),
-            Text(f"{value:.4g}" if isinstance(value, float) else str(value)),
-        )
-    console.print(details)
-    for line in plan.specimen:
-        console.print(Text(f"specimen: {line}"), soft_wrap=True)
-    console.print(Text(f"expected error: {percent(plan.estimated_error)} ({plan.covers})"))
-    if plan.errors:
-        console.print(
-            Text(
-                "by quantity: "
-                + ", ".join(f"{name} {percent(error)}" for name, error in plan.errors.items())
-            )
-        )
-    if plan.missed():
-        console.print(Text(plan.missed()))
-    for note in plan.surface.notes:
-        console.print(Text(f"note: {note}"))
-    console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
+    Console(highlight=False).print(plan.shown(f"Plan of {scene.name}"), crop=False)
 
 
 @contextlib.contextmanager

@@ -1,23 +1,28 @@
 """Results of a simulation: the labelled history, its summary, and its files.
 
-A history is an :class:`xarray.Dataset` of the whole pad (a half model is unfolded before it gets
-here) with units and long names on every variable and plan, scene, cost and provenance in its
-attributes, so it plots itself in a notebook: ``simulate(scene).contact_width.plot()``.
+A history is an :class:`xarray.Dataset` of the whole pad, also where half of it was solved. Every
+variable has its unit and long name. Plan, scene, cost and provenance are in the attributes, and
+the accessor ``history.fingerpad`` reads them.
 """
 
 from __future__ import annotations
 
 import json
 import platform
+import resource
 import sys
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import meshio
 import numpy as np
+import xarray as xr
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
+from fingerpad.planning.plan_data import Plan
 from fingerpad.processes import threads
 from fingerpad.provenance import code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
@@ -25,96 +30,68 @@ from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.near import nearest
 from fingerpad.stimuli.motion import NO_TIME
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-#: name -> (dimensions, unit, long name)
-VARIABLES = {
-    "force": (("time",), "N/m", "normal force per contact length, compression positive"),
-    "tangential_force": (("time",), "N/m", "lateral force on the indenter per contact length"),
-    "stroke_distance": (("time",), "m", "way of the pad's centre along the stimulus"),
-    "indentation_depth": (("time",), "m", "indentation depth since first touch"),
-    "contact_width": (("time",), "m", "contact width"),
-    "touching_width": (("time",), "m", "touching width, the contact's without its gaps"),
-    "centre_pressure": (("time",), "Pa", "contact pressure at the skin node at x = 0"),
-    "peak_pressure": (("time",), "Pa", "largest nodal contact pressure"),
-    "centre_lateral_displacement": (
-        ("time",),
-        "m",
-        "lateral displacement of the skin node at x = 0",
-    ),
-    "contact_pressure": (("time", "skin_node"), "Pa", "contact pressure, nodal"),
-    "contact_pressure_smoothed": (
-        ("time", "skin_node"),
-        "Pa",
-        "contact pressure, 5-point average of force over length",
-    ),
-    "skin_displacement_x": (("time", "skin_node"), "m", "lateral displacement of the skin"),
-    "skin_displacement_y": (("time", "skin_node"), "m", "vertical displacement of the skin"),
-    "strain_energy_density": (
-        ("time", "receptor"),
-        "Pa",
-        "strain energy density, total stress on instantaneous moduli",
-    ),
+_OF_TIME = {
+    "force": ("N/m", "normal force per contact length, compression positive"),
+    "tangential_force": ("N/m", "lateral force on the indenter per contact length"),
+    "stroke_distance": ("m", "way of the pad's centre along the stimulus"),
+    "indentation_depth": ("m", "indentation depth since first touch"),
+    "contact_width": ("m", "contact width"),
+    "touching_width": ("m", "touching width, the contact's without its gaps"),
+    "centre_pressure": ("Pa", "contact pressure at the skin node at x = 0"),
+    "peak_pressure": ("Pa", "largest nodal contact pressure"),
+    "centre_lateral_displacement": ("m", "lateral displacement of the skin node at x = 0"),
+    "leg": ("1", "leg of the motion programme"),
+    "interpolated": ("1", "1 between two states that were found, 0 where one was"),
+    "newton_iterations": ("1", "Newton iterations of the step"),
+    "cutbacks": ("1", "halvings of the step"),
+    "residual": ("1", "out-of-balance force over contact force"),
+    "complementarity_error": ("1", "sum of force times gap over total force times node spacing"),
+    "energy_balance_error": ("1", "work less stored and dissipated energy, over work"),
+    "min_detF": ("1", "smallest det F of the body"),
+    "external_work": ("J/m", "work of the indenter per contact length"),
+    "stored_energy": ("J/m", "network and Maxwell-spring energy per contact length"),
+    "dissipated_energy": ("J/m", "viscous dissipation per contact length"),
+    "frictional_dissipation": ("J/m", "frictional dissipation per contact length"),
+}
+_OF_SKIN = {
+    "contact_pressure": ("Pa", "contact pressure, nodal"),
+    "contact_pressure_smoothed": ("Pa", "contact pressure, 5-point average of force over length"),
+    "skin_displacement_x": ("m", "lateral displacement of the skin"),
+    "skin_displacement_y": ("m", "vertical displacement of the skin"),
+    "tangential_traction": ("Pa", "frictional traction on the skin along the contact's tangent"),
+    "slip": ("m", "way of the skin node over the stimulus in the step"),
+    "contact_state": ("1", "0 no contact, 1 sticks, 2 slips"),
+}
+_OF_RECEPTORS = {
+    "strain_energy_density": ("Pa", "strain energy density, total stress on instantaneous moduli"),
     "strain_energy_long_term_moduli": (
-        ("time", "receptor"),
         "Pa",
         "strain energy density, total stress on long-term moduli",
     ),
     "strain_energy_half_stress_strain": (
-        ("time", "receptor"),
         "Pa",
         "strain energy density, half of total stress times strain",
     ),
-    "strain_energy_recoverable": (
-        ("time", "receptor"),
-        "Pa",
-        "strain energy density of network and Maxwell springs",
-    ),
-    "strain_energy_network": (
-        ("time", "receptor"),
-        "Pa",
-        "strain energy density of the long-term network",
-    ),
-    "compressive_strain": (
-        ("time", "receptor"),
-        "1",
-        "largest compressive principal strain, 1 - stretch",
-    ),
-    "tensile_strain": (("time", "receptor"), "1", "largest tensile principal strain, stretch - 1"),
-    "von_mises_stress": (("time", "receptor"), "Pa", "von Mises stress, Cauchy"),
-    "hydrostatic_pressure": (
-        ("time", "receptor"),
-        "Pa",
-        "mean compressive stress, volumetric part",
-    ),
-    "dilatation": (("time", "receptor"), "1", "relative change of volume, det F - 1"),
-    "leg": (("time",), "1", "leg of the motion programme"),
-    "interpolated": (("time",), "1", "1 between two states that were found, 0 where one was"),
-    "newton_iterations": (("time",), "1", "Newton iterations of the step"),
-    "cutbacks": (("time",), "1", "halvings of the step"),
-    "residual": (("time",), "1", "out-of-balance force over contact force"),
-    "complementarity_error": (
-        ("time",),
-        "1",
-        "sum of force times gap over total force times node spacing",
-    ),
-    "energy_balance_error": (("time",), "1", "work less stored and dissipated energy, over work"),
-    "min_detF": (("time",), "1", "smallest det F of the body"),
-    "external_work": (("time",), "J/m", "work of the indenter per contact length"),
-    "stored_energy": (("time",), "J/m", "network and Maxwell-spring energy per contact length"),
-    "dissipated_energy": (("time",), "J/m", "viscous dissipation per contact length"),
-    "frictional_dissipation": (("time",), "J/m", "frictional dissipation per contact length"),
-    "tangential_traction": (
-        ("time", "skin_node"),
-        "Pa",
-        "frictional traction on the skin along the contact's tangent",
-    ),
-    "slip": (("time", "skin_node"), "m", "way of the skin node over the stimulus in the step"),
-    "contact_state": (("time", "skin_node"), "1", "0 no contact, 1 sticks, 2 slips"),
+    "strain_energy_recoverable": ("Pa", "strain energy density of network and Maxwell springs"),
+    "strain_energy_network": ("Pa", "strain energy density of the long-term network"),
+    "compressive_strain": ("1", "largest compressive principal strain, 1 - stretch"),
+    "tensile_strain": ("1", "largest tensile principal strain, stretch - 1"),
+    "von_mises_stress": ("Pa", "von Mises stress, Cauchy"),
+    "hydrostatic_pressure": ("Pa", "mean compressive stress, volumetric part"),
+    "dilatation": ("1", "relative change of volume, det F - 1"),
 }
-#: those that exist only in a history with friction
+VARIABLES = {
+    name: (dims, *about)
+    for dims, group in (
+        (("time",), _OF_TIME),
+        (("time", "skin_node"), _OF_SKIN),
+        (("time", "receptor"), _OF_RECEPTORS),
+    )
+    for name, about in group.items()
+}
+"""Name -> (dimensions, unit, long name) of every variable of a history."""
 FRICTION_VARIABLES = ("tangential_traction", "slip", "contact_state")
+"""Those that only a history with friction has."""
 COORDINATES = {
     "time": ("time", "s", "time"),
     "receptor_depth": ("receptor", "m", "receptor depth below the undeformed skin"),
@@ -127,8 +104,6 @@ COORDINATES = {
         "way along the undeformed skin from the apex, positive to the right",
     ),
 }
-#: what a full field holds beside displacement and mean stress: name -> (unit in files, in vtu
-#: files, factor, long name)
 ENERGIES = [name for name in VARIABLES if name.startswith("strain_energy")]
 FIELDS = {
     **{name: ("Pa", "Pa", 1.0, VARIABLES[name][2]) for name in ENERGIES},
@@ -136,102 +111,56 @@ FIELDS = {
     "cauchy_stress": ("Pa", "kPa", 1e-3, "Cauchy stress xx, yy, xy, zz"),
     "von_mises_stress": ("Pa", "kPa", 1e-3, VARIABLES["von_mises_stress"][2]),
 }
-#: of a leg's entry in a summary with more receptors than this, the energies are in the history only
+"""What a full field has beside displacement and mean stress: name -> (unit in histories, unit in
+vtu files, factor, long name).
+"""
 MOST_RECEPTORS = 100
+"""A summary with more receptors has no strain energies of them."""
+_PACKAGES = (
+    "fingerpad",
+    "numpy",
+    "scipy",
+    "numba",
+    "scikit-fem",
+    "gmsh",
+    "meshio",
+    "mkl",
+    "xarray",
+)
 
 
-@dataclass
-class Variable:
-    """One array of a history, the names of its dimensions, and what is said of it."""
+def history_of(
+    variables: Mapping[str, np.ndarray],
+    coordinates: Mapping[str, np.ndarray],
+    attributes: Mapping[str, Any],
+) -> xr.Dataset:
+    """A history from its arrays.
 
-    dims: tuple[str, ...]
-    values: np.ndarray
-    attrs: dict[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self.dims = (self.dims,) if isinstance(self.dims, str) else tuple(self.dims)
-        self.values = np.asarray(self.values)
-
-
-@dataclass
-class Arrays:
-    """A history as a run makes it, and as it is written: importing xarray takes as long as half of
-    a small run.
-
-    Attributes:
-        variables, coordinates: by name. attrs: plan, scene, cost and provenance.
+    Parameters
+    ----------
+    variables, coordinates
+        Arrays by name, of the dimensions in :data:`VARIABLES` and :data:`COORDINATES`.
+    attributes
+        Of the history; dictionaries and lists are kept as JSON.
     """
-
-    variables: dict[str, Variable]
-    coordinates: dict[str, Variable]
-    attrs: dict[str, Any]
-
-    @classmethod
-    def of(cls, history: xr.Dataset | Arrays) -> Arrays:
-        """The arrays of a labelled history."""
-        if isinstance(history, cls):
-            return history
-        parts = (
-            {str(k): Variable(v.dims, v.values, v.attrs) for k, v in part.items()}
-            for part in (history.data_vars, history.coords)
-        )
-        return cls(*parts, history.attrs)
-
-    def __getitem__(self, name: str) -> Variable:
-        return self.variables[name] if name in self.variables else self.coordinates[name]
-
-    def __contains__(self, name: str) -> bool:
-        return name in self.variables or name in self.coordinates
-
-    @property
-    def sizes(self) -> dict[str, int]:
-        """Length of each dimension."""
-        parts = (*self.variables.values(), *self.coordinates.values())
-        return {
-            name: size
-            for part in parts
-            for name, size in zip(part.dims, part.values.shape, strict=True)
-        }
-
-    def labelled(self) -> xr.Dataset:
-        """The history as what everybody else works with."""
-        import xarray as xr
-
-        parts = (
-            {k: (v.dims, v.values, v.attrs) for k, v in part.items()}
-            for part in (self.variables, self.coordinates)
-        )
-        return _indexed(xr.Dataset(*parts, self.attrs))
-
-
-def arrays(
-    variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]
-) -> Arrays:
-    """A history from arrays named as in :data:`VARIABLES` and :data:`COORDINATES`; dict attributes
-    become JSON.
-    """
-    made = (
-        {
-            name: Variable(
-                known[name][0], values, {"units": known[name][1], "long_name": known[name][2]}
-            )
-            for name, values in given.items()
-        }
-        for known, given in ((VARIABLES, variables), (COORDINATES, coordinates))
+    data, places = (
+        {name: _labelled(*known[name], values) for name, values in arrays.items()}
+        for known, arrays in ((VARIABLES, variables), (COORDINATES, coordinates))
     )
-    return Arrays(
-        *made,
-        {
-            k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v
-            for k, v in attributes.items()
-        },
-    )
+    texts = {
+        name: json.dumps(value, sort_keys=True) if isinstance(value, (dict, list)) else value
+        for name, value in attributes.items()
+    }
+    return _indexed(xr.Dataset(data, places, texts))
+
+
+def _labelled(dims: Any, unit: str, long_name: str, values: Any) -> tuple:
+    """What xarray makes a variable of."""
+    return dims, values, {"units": unit, "long_name": long_name}
 
 
 def _indexed(history: xr.Dataset) -> xr.Dataset:
-    """The history with its skin indexed by the way along it, which grows where x turns back under
-    the pad.
-    """
+    """The history with its skin indexed by arc length; x turns back under the pad."""
     return history.set_xindex("skin_arc") if "skin_arc" in history.coords else history
 
 
@@ -244,86 +173,69 @@ def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
 
 
 def add_snapshots(
-    history: Arrays,
-    times,
-    points,
-    cells,
-    region,
-    displacement,
-    pressure,
-    regions,
-    indenter=None,
-    fields=None,
+    history: xr.Dataset,
+    times: np.ndarray,
+    points: np.ndarray,
+    cells: np.ndarray,
+    region: np.ndarray,
+    displacement: np.ndarray,
+    pressure: np.ndarray,
+    regions: tuple[str, ...],
+    indenter: np.ndarray | None = None,
+    fields: Mapping[str, np.ndarray] | None = None,
 ) -> None:
-    """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure``
-    (snapshot, element) Pa.
+    """Add full fields to a history, in place.
 
-    Of the layers ``regions`` the numbers ``region`` (element,) are indices. ``indenter`` (snapshot,
-    n, 2) m, outlines of the stimulus. ``fields``: more of the elements (snapshot, element[,
-    components]), named as in :data:`FIELDS`.
+    Parameters
+    ----------
+    times : (snapshot,) s
+    points : (node, 2) m, undeformed
+    cells : (element, nodes of an element)
+    region : (element,), indices of the layers ``regions``
+    displacement : (snapshot, node, 2) m
+    pressure : (snapshot, element) Pa
+    indenter : (snapshot, n, 2) m, outlines of the stimulus
+    fields : (snapshot, element[, components]), named as in :data:`FIELDS`
     """
+    of_nodes, of_elements = ("snapshot", "node", "axis"), ("snapshot", "element")
     layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
-    found = {
-        "snapshot_time": ("snapshot", np.asarray(times, float), "s", "time of the full field"),
-        "node_position": (("node", "axis"), points, "m", "undeformed node position"),
-        "element_nodes": (("element", "element_node"), cells, "1", "nodes of each element"),
-        "element_region": ("element", region, "1", layers),
-        "snapshot_displacement": (("snapshot", "node", "axis"), displacement, "m", "displacement"),
-        "snapshot_pressure": (
-            ("snapshot", "element"),
-            pressure,
-            "Pa",
-            "mean stress kappa (J - 1), element mean",
-        ),
+    mean = "mean stress kappa (J - 1), element mean"
+    new = {
+        "snapshot_time": ("snapshot", "s", "time of the full field", np.asarray(times, float)),
+        "node_position": (("node", "axis"), "m", "undeformed node position", points),
+        "element_nodes": (("element", "element_node"), "1", "nodes of each element", cells),
+        "element_region": ("element", "1", layers, region),
+        "snapshot_displacement": (of_nodes, "m", "displacement", displacement),
+        "snapshot_pressure": (of_elements, "Pa", mean, pressure),
     }
     if indenter is not None:
-        found["snapshot_indenter"] = (
-            ("snapshot", "outline_point", "axis"),
-            indenter,
-            "m",
-            "outline of the stimulus",
-        )
+        dims = ("snapshot", "outline_point", "axis")
+        new["snapshot_indenter"] = (dims, "m", "outline of the stimulus", indenter)
     for name, values in (fields or {}).items():
-        dims = ("snapshot", "element", *((f"component_of_{name}",) if values.ndim == 3 else ()))
-        found[f"snapshot_{name}"] = (
-            dims,
-            values,
-            FIELDS[name][0],
-            f"{FIELDS[name][3]}, middle of the element",
-        )
-    for name, (dims, values, units, what) in found.items():
-        history.variables[name] = Variable(dims, values, {"units": units, "long_name": what})
+        dims = (*of_elements, f"component_of_{name}")[: values.ndim]
+        unit, _, _, long_name = FIELDS[name]
+        new[f"snapshot_{name}"] = (dims, unit, f"{long_name}, middle of the element", values)
+    history.update({name: _labelled(*about) for name, about in new.items()})
 
 
 @lru_cache(maxsize=1)
 def provenance() -> dict[str, Any]:
     """What produced a result: code digest, package versions, machine and threads."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    packages = {}
-    for name in (
-        "fingerpad",
-        "numpy",
-        "scipy",
-        "numba",
-        "scikit-fem",
-        "gmsh",
-        "meshio",
-        "mkl",
-        "xarray",
-    ):
-        try:
-            packages[name] = version(name)
-        except PackageNotFoundError:
-            packages[name] = "absent"
     return {
         "code_sha256": code_digest()[:16],
         "python": platform.python_version(),
-        "packages": packages,
+        "packages": {name: _version(name) for name in _PACKAGES},
         "machine": f"{platform.system()} {platform.machine()}",
         "processor": _processor(),
         "threads": threads(),
     }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "absent"
 
 
 def _processor() -> str:
@@ -338,17 +250,14 @@ def _processor() -> str:
 
 def peak_memory_MB() -> float:
     """Largest resident memory of this process so far, MB."""
-    import resource
-
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak / 1024
 
 
 def scene_of(history: xr.Dataset) -> Scene:
-    """The scene a history was simulated from: its models know the profile, the outline and the
-    schedule.
+    """The scene that a history was simulated from, with its profile, outline and schedule.
 
-    An external mesh is known by its name only. Asked for again, the same scene is not read again.
+    Of an external mesh only the name is known. The scene of a text is read once.
     """
     return _scene(history.attrs["scene"])
 
@@ -364,120 +273,122 @@ def leg_ends(history: xr.Dataset) -> xr.Dataset:
     return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
 
 
-def states_found(history: xr.Dataset | Arrays) -> int:
+def states_found(history: xr.Dataset) -> int:
     """How many states of a history were found by steps; its other outputs lie between them."""
     return int(np.sum(history["interpolated"].values == 0)) - 1
 
 
-def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
+def summary(history: xr.Dataset) -> dict[str, Any]:
     """The summary of a history: the state at the end of each leg, and what the run took.
 
-    Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of
-    each; of more than
-    :data:`MOST_RECEPTORS` points ``receptors`` says that they are in the history.
+    Parameters
+    ----------
+    history
+        As :func:`fingerpad.simulate` returns it.
+
+    Returns
+    -------
+    dict
+        ``legs``: one entry a leg. Strain energies are lists over the receptors, and once more in
+        ``receptors`` with the place of each; of more than :data:`MOST_RECEPTORS` receptors they are
+        in the history only. ``run``: iterations, errors, notes and cost. ``responses``: impulses of
+        each receptor, where the history has them.
     """
-    history = Arrays.of(history)
-    attributes, leg_of = history.attrs, history["leg"].values
-    numbers = np.unique(leg_of[1:])
-    errors = json.loads(attributes.get("estimated_error_of_legs", "[]")) or [
-        float(attributes["estimated_error"])
-    ] * len(numbers)
-    cost, length = (
-        json.loads(history.attrs["cost"]),
-        json.loads(history.attrs["scene"])["specimen"]["contact_length"],
-    )
     places = [
-        {"depth_mm": round(depth * 1e3, 9), "offset_mm": round(offset * 1e3, 9)}
+        {"depth_mm": round(1e3 * depth, 9), "offset_mm": round(1e3 * offset, 9)}
         for depth, offset in zip(
             history["receptor_depth"].values.tolist(),
             history["receptor_offset"].values.tolist(),
             strict=True,
         )
     ]
-    legs = []
-    places_of = json.loads(attributes.get("unbounded_at_of_legs", "[]")) or [""] * len(numbers)
-    for leg, error, unbounded in zip(numbers, errors, places_of, strict=True):
-        end = int(np.flatnonzero(leg_of == leg)[-1])
-
-        def at_end(name: str, end: int = end) -> float:
-            return float(history[name].values[end])
-
-        force = at_end("force")
-        entry = {
-            "time_s": round(at_end("time"), 9),
-            "estimated_error": error,
-            "depth_mm": at_end("indentation_depth") * 1e3,
-            "force_N_per_m": force,
-            "force_N": force * length,
-            "force_gf": force * length / 9.80665e-3,
-            "tangential_force_N_per_m": at_end("tangential_force"),
-            "contact_width_mm": at_end("contact_width") * 1e3,
-            "touching_width_mm": at_end(
-                "touching_width" if "touching_width" in history else "contact_width"
-            )
-            * 1e3,
-            "peak_pressure_Pa": at_end("peak_pressure"),
-            "peak_pressure_unbounded_at": unbounded,
-            "centre_pressure_Pa": at_end("centre_pressure"),
-            "centre_lateral_displacement_mm": at_end("centre_lateral_displacement") * 1e3,
-            "stroke_distance_mm": at_end("stroke_distance") * 1e3,
-        }
-        if len(places) > MOST_RECEPTORS:
-            entry["receptors"] = (
-                f"{len(places)} receptor points: their strain energies are in the history"
-            )
-        else:
-            energies = {_energy_key(name): history[name].values[end].tolist() for name in ENERGIES}
-            each = [
-                dict(zip(energies, values, strict=True))
-                for values in zip(*energies.values(), strict=True)
-            ]
-            entry |= energies
-            entry["receptors"] = [
-                place | values for place, values in zip(places, each, strict=True)
-            ]
-        legs.append(entry)
-    run = {
-        "steps": states_found(history),
-        "newton_iterations": int(history["newton_iterations"].values.sum()),
-        "cutbacks": int(history["cutbacks"].values.sum()),
-        "energy_balance_error": float(history["energy_balance_error"].values[-1]),
-        "complementarity_error": float(history["complementarity_error"].values.max()),
-        "min_detF": float(history["min_detF"].values.min()),
-        "estimated_error": float(attributes["estimated_error"]),
-        "largest_error": float(attributes.get("largest_error", attributes["estimated_error"])),
-        "error_covers": attributes.get("error_covers", ""),
-        "peak_pressure_singular": bool(attributes.get("singular")),
-        "peak_pressure_unbounded_at": attributes.get("unbounded_at", ""),
-    } | cost
-    asked = float(attributes.get("asked_error", np.nan))
-    if np.isfinite(asked):
-        missed = attributes["tolerance"]
-        run |= {"asked_error": asked, "tolerance_met": not missed, "tolerance_missed": missed}
-        run["runs"] = json.loads(attributes["runs"])
-    how, notes = (
-        json.loads(history.attrs.get(name, empty))
-        for name, empty in (("plan", "{}"), ("notes", "[]"))
+    ends = leg_ends(history)
+    errors, unbounded = (
+        json.loads(history.attrs[f"{name}_of_legs"]) for name in ("estimated_error", "unbounded_at")
     )
-    run |= {
-        key: value
-        for key, value in how.get("discretisation", {}).items()
-        if key.startswith("profile_")
+    totals = {
+        "legs": [
+            _leg(ends.isel(time=k), error, where, places)
+            for k, (error, where) in enumerate(zip(errors, unbounded, strict=True))
+        ],
+        "run": _run(history),
     }
-    if notes:
-        run |= {
-            "contact_reached_profile_end": any("reached the end" in note for note in notes),
-            "notes": notes,
-        }
-    totals = {"legs": legs, "run": run}
     if "impulse_rate" in history:
         totals["responses"] = _responses(history, places)
     return totals
 
 
-def _responses(history: Arrays, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
-    """What each receptor sends: how many impulses, the highest rate, and when the first impulse
-    comes (None: never).
+def _leg(
+    end: xr.Dataset, error: float, unbounded: str, places: list[dict[str, float]]
+) -> dict[str, Any]:
+    """The entry of a leg in the summary, from the history at its end."""
+
+    def at_end(name: str, factor: float = 1.0) -> float:
+        return float(end[name]) * factor
+
+    force_N = at_end("force", scene_of(end).specimen.contact_length)
+    entry = {
+        "time_s": round(at_end("time"), 9),
+        "estimated_error": error,
+        "depth_mm": at_end("indentation_depth", 1e3),
+        "force_N_per_m": at_end("force"),
+        "force_N": force_N,
+        "force_gf": force_N / 9.80665e-3,
+        "tangential_force_N_per_m": at_end("tangential_force"),
+        "contact_width_mm": at_end("contact_width", 1e3),
+        "touching_width_mm": at_end("touching_width", 1e3),
+        "peak_pressure_Pa": at_end("peak_pressure"),
+        "peak_pressure_unbounded_at": unbounded,
+        "centre_pressure_Pa": at_end("centre_pressure"),
+        "centre_lateral_displacement_mm": at_end("centre_lateral_displacement", 1e3),
+        "stroke_distance_mm": at_end("stroke_distance", 1e3),
+    }
+    if len(places) > MOST_RECEPTORS:
+        said = f"{len(places)} receptor points: their strain energies are in the history"
+        return entry | {"receptors": said}
+    energies = {_energy_key(name): end[name].values.tolist() for name in ENERGIES}
+    of_receptors = [
+        place | dict(zip(energies, values, strict=True))
+        for place, values in zip(places, zip(*energies.values(), strict=True), strict=True)
+    ]
+    return entry | energies | {"receptors": of_receptors}
+
+
+def _run(history: xr.Dataset) -> dict[str, Any]:
+    """The entry of the whole run in the summary."""
+    attributes = history.attrs
+    cost, plan, notes = (json.loads(attributes[name]) for name in ("cost", "plan", "notes"))
+    out = {
+        "steps": states_found(history),
+        "newton_iterations": int(history["newton_iterations"].sum()),
+        "cutbacks": int(history["cutbacks"].sum()),
+        "energy_balance_error": float(history["energy_balance_error"][-1]),
+        "complementarity_error": float(history["complementarity_error"].max()),
+        "min_detF": float(history["min_detF"].min()),
+        "estimated_error": float(attributes["estimated_error"]),
+        "largest_error": float(attributes["largest_error"]),
+        "error_covers": attributes["error_covers"],
+        "peak_pressure_singular": bool(attributes["singular"]),
+        "peak_pressure_unbounded_at": attributes["unbounded_at"],
+    } | cost
+    if np.isfinite(attributes.get("asked_error", np.nan)):
+        out |= {
+            "asked_error": float(attributes["asked_error"]),
+            "tolerance_met": not attributes["tolerance"],
+            "tolerance_missed": attributes["tolerance"],
+            "runs": json.loads(attributes["runs"]),
+        }
+    discretisation = plan["discretisation"].items()
+    out |= {name: value for name, value in discretisation if name.startswith("profile_")}
+    if notes:
+        at_end = any("reached the end" in note for note in notes)
+        out |= {"contact_reached_profile_end": at_end, "notes": notes}
+    return out
+
+
+def _responses(history: xr.Dataset, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
+    """Of each receptor: how many impulses, the highest rate, and when the first impulse comes
+    (None: never).
     """
     if len(places) > MOST_RECEPTORS:
         return f"{len(places)} receptor points: their impulses are in the history"
@@ -498,81 +409,59 @@ def _energy_key(name: str) -> str:
     return "strain_energy_Pa" if name == "strain_energy_density" else f"{name}_Pa"
 
 
-def write_history(history: xr.Dataset | Arrays, path: str | Path) -> None:
-    """Write a history as NetCDF 4, whole or not at all, as xarray would.
+def write_history(history: xr.Dataset, path: str | Path) -> None:
+    """Write a history as NetCDF 4, whole or not at all.
 
-    Raises:
-        OSError: it cannot be written, on a full disk for example.
+    Raises
+    ------
+    OSError
+        It cannot be written, for example on a full disk.
     """
-    history = Arrays.of(history)
+    packed = {
+        str(name): {"zlib": True, "complevel": 4}
+        for name, variable in history.data_vars.items()
+        if variable.ndim > 1 and variable.dtype.kind not in "UO" and _mostly_zero(variable.values)
+    }
 
     def write(partial: Path) -> None:
         try:
-            _write_netcdf(history, partial)
+            history.drop_encoding().to_netcdf(partial, engine="netcdf4", encoding=packed)
         except RuntimeError as error:  # what netCDF makes of an error of the disk
             raise disk_is_full(partial.parent) or OSError(f"{error}") from error
 
     write_atomically(path, write)
 
 
-def _write_netcdf(history: Arrays, path: Path) -> None:
-    import netCDF4
-
-    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
-        for name, size in history.sizes.items():
-            file.createDimension(name, size)
-        file.setncatts(history.attrs)
-        beside = {
-            name: set(each.dims)
-            for name, each in history.coordinates.items()
-            if each.dims != (name,)
-        }
-        made = {}
-        for name, each in (history.variables | history.coordinates).items():
-            text = each.values.dtype.kind in "UO"
-            packed = (
-                "zlib" if each.values.ndim > 1 and not text and _mostly_zero(each.values) else None
-            )
-            fill = np.nan if each.values.dtype.kind == "f" else None
-            kind = str if text else each.values.dtype
-            made[name] = file.createVariable(
-                name, kind, each.dims, packed, complevel=4, fill_value=fill
-            )
-            made[name].setncatts(each.attrs)
-            if (
-                name in history.variables
-            ):  # the convention of the CF metadata, by which xarray tells coordinates
-                belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))
-                if belong:
-                    made[name].setncattr("coordinates", " ".join(belong))
-        # all after all, as a file is laid out anew at each change from the one to the other: a
-        # third of the time
-        for name, each in (history.variables | history.coordinates).items():
-            made[name][...] = (
-                each.values.astype(object) if each.values.dtype.kind in "UO" else each.values
-            )
-
-
 def _mostly_zero(values: np.ndarray) -> bool:
-    """Is it worth packing? What is solved for has digits to the last: packed it takes four times
-    the time, a fifth less room.
+    """Whether packing is worth its time: solved values have digits to the last, and packed they
+    take a fifth less room and four times the time.
     """
     return np.count_nonzero(values) < values.size / 2
 
 
 class ResultError(ValueError):
-    """A file is no result of this package, or but a part of one; the message names it."""
+    """A file is no result of this package, or only a part of one; the message names it."""
 
 
 def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
-    """Read a result into memory, which must hold some variables.
+    """Read a result into memory.
 
-    Raises:
-        ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there
-        is none.
+    Parameters
+    ----------
+    path
+        A NetCDF file.
+    holds
+        Variables that it must have.
+
+    Raises
+    ------
+    ResultError
+        The file is cut off, of another kind, or lacks a variable.
+    FileNotFoundError
+        There is none.
     """
     try:
-        found = _loaded(path)
+        data = xr.load_dataset(path, engine="netcdf4")
     except (FileNotFoundError, PermissionError):
         raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -581,110 +470,69 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
             f"{path}: cut off, or no NetCDF file; remove it and run again ({why})"
         ) from None
     for name in holds:
-        if name not in found.variables:
+        if name not in data.variables:
             raise ResultError(
                 f"{path}: holds no {name}, so is no result of this kind; remove it and run again"
             )
-    return found
-
-
-def _loaded(path: str | Path) -> xr.Dataset:
-    """All of a file at once: xarray's own way opens a variable at a time, and looks for all its
-    backends first.
-    """
-    import netCDF4
-    import xarray as xr
-
-    with netCDF4.Dataset(path) as file:
-        file.set_auto_maskandscale(False)
-        found = xr.Dataset(
-            {
-                name: (each.dimensions, each[...], each.__dict__)
-                for name, each in file.variables.items()
-            },
-            None,
-            file.__dict__,
-        )
-    return xr.decode_cf(found).load()
+    return data
 
 
 def read_history(path: str | Path) -> xr.Dataset:
-    """Read a history written by :func:`write_history`, or the one in the folder of a run, into
-    memory.
+    """Read a history into memory.
 
-    Raises as :func:`read_dataset`.
+    Parameters
+    ----------
+    path
+        A file written by :func:`write_history`, or the folder of a run.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    ResultError
+        The file is cut off, or is no history.
+    FileNotFoundError
+        There is none.
     """
     path = Path(path) / "history.nc" if Path(path).is_dir() else path
     return _indexed(read_dataset(path, ("time", "leg", "force", "indentation_depth")))
 
 
-def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]:
-    """Write each full field of a history for ParaView; returns the paths of the pad's, none without
-    full fields.
+def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
+    """Write each full field of a history for ParaView.
 
     ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and
-    traction on its skin (kPa) at nodes; layer, mean stress and whatever else the history holds of
+    traction on its skin (kPa) at nodes; layer, mean stress and what else the history holds of
     :data:`FIELDS` in elements. ``indenter_<k>.vtu`` is the outline of the stimulus.
     ``snapshots.pvd`` opens all of them as one film, ``snapshots.vtu.series`` the pad alone.
+
+    Returns
+    -------
+    list of Path
+        The files of the pad; none where the history has no full fields.
     """
     if "snapshot_time" not in history:
         return []
-    import meshio
-
-    history = history.labelled() if isinstance(history, Arrays) else history
-    directory, nodes = Path(directory), history.sizes["node"]
-    kind = kind_of(history.sizes["element_node"]).meshio
-    position, region = history.node_position.values, history.element_region
-    skin = nearest(np.column_stack([history.skin_x, history.skin_y]), position, 1)[:, 0]
+    directory = Path(directory)
     times = history.snapshot_time.values.tolist()
     paths, parts = [], []
     for k, time in enumerate(times):
-        now = history.isel(snapshot=k)
-        state = history.isel(
-            time=int(
-                np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2))[
-                    -1
-                ]
-            )
-        )
-        on_skin = {"contact pressure (kPa)": state.contact_pressure}
-        if "tangential_traction" in state:
-            on_skin["frictional traction (kPa)"] = state.tangential_traction
-        point_data = {"displacement (mm)": _in_space(now.snapshot_displacement.values * 1e3)}
-        for name, values in on_skin.items():
-            point_data[name] = np.zeros(nodes)
-            point_data[name][skin] = values.values * 1e-3
-        cell_data = {
-            "mean stress (kPa)": now.snapshot_pressure.values * 1e-3,
-            "layer": region.values.astype(np.int32),
-        }
-        cell_data[f"layer ({region.attrs['long_name']})"] = cell_data["layer"]
-        for name, (_, unit, factor, _) in FIELDS.items():
-            if f"snapshot_{name}" in now:
-                cell_data |= _named(name, unit, factor * now[f"snapshot_{name}"].values)
-        blocks = {name: [values] for name, values in cell_data.items()}
-        field = meshio.Mesh(
-            _in_space(position * 1e3), [(kind, history.element_nodes.values)], point_data, blocks
-        )
+        meshes = {f"snapshot_{k}.vtu": _pad_mesh(history, k, time)}
         paths.append(directory / f"snapshot_{k}.vtu")
-        made = {paths[-1].name: field}
-        if "snapshot_indenter" in now:
-            outline = now.snapshot_indenter.values
+        if "snapshot_indenter" in history:
+            outline = history.snapshot_indenter.values[k]
             outline = outline[np.isfinite(outline).all(1)] * 1e3
             line = np.column_stack([np.arange(len(outline) - 1), np.arange(1, len(outline))])
-            made[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
-        for part, (name, mesh) in enumerate(made.items()):
+            meshes[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
+        for part, (name, mesh) in enumerate(meshes.items()):
             write_atomically(
                 directory / name, lambda partial, mesh=mesh: mesh.write(partial, file_format="vtu")
             )
             parts.append(f'<DataSet timestep="{time!r}" part="{part}" file="{name}"/>')
-    film = "\n".join(
-        [
-            '<VTKFile type="Collection" version="0.1"><Collection>',
-            *parts,
-            "</Collection></VTKFile>\n",
-        ]
-    )
+    opening = '<VTKFile type="Collection" version="0.1"><Collection>'
+    film = "\n".join([opening, *parts, "</Collection></VTKFile>\n"])
     write_text(directory / "snapshots.pvd", film)
     frames = [{"name": path.name, "time": time} for path, time in zip(paths, times, strict=True)]
     series = {"file-series-version": "1.0", "files": frames}
@@ -692,11 +540,41 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
     return paths
 
 
+def _pad_mesh(history: xr.Dataset, k: int, time: float) -> meshio.Mesh:
+    """The pad of a snapshot (``k``, at ``time`` s) with what is known at its nodes and in its
+    elements.
+    """
+    now, position = history.isel(snapshot=k), history.node_position.values
+    outputs = np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2)
+    state = history.isel(time=int(np.flatnonzero(outputs)[-1]))
+    skin = nearest(np.column_stack([history.skin_x, history.skin_y]), position, 1)[:, 0]
+    point_data = {"displacement (mm)": _in_space(now.snapshot_displacement.values * 1e3)}
+    on_skin = {"contact pressure": "contact_pressure", "frictional traction": "tangential_traction"}
+    for label, name in on_skin.items():
+        if name in state:
+            values = np.zeros(len(position))
+            values[skin] = state[name].values * 1e-3
+            point_data[f"{label} (kPa)"] = values
+    region = history.element_region
+    layer = region.values.astype(np.int32)
+    cell_data = {
+        "mean stress (kPa)": now.snapshot_pressure.values * 1e-3,
+        "layer": layer,
+        f"layer ({region.attrs['long_name']})": layer,
+    }
+    for name, (_, unit, factor, _) in FIELDS.items():
+        if f"snapshot_{name}" in now:
+            cell_data |= _field_arrays(name, unit, factor * now[f"snapshot_{name}"].values)
+    cells = [(kind_of(history.sizes["element_node"]).meshio, history.element_nodes.values)]
+    of_blocks = {name: [values] for name, values in cell_data.items()}
+    return meshio.Mesh(_in_space(position * 1e3), cells, point_data, of_blocks)
+
+
 def _in_space(plane: np.ndarray) -> np.ndarray:
     return np.column_stack([plane, np.zeros(len(plane))])
 
 
-def _named(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
+def _field_arrays(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
     """The arrays of a field as ParaView shows them: scalars by their name, a tensor with its nine
     components.
     """
@@ -711,3 +589,72 @@ def _named(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
             f"largest principal strain ({unit})": values[:, 1],
         }
     return {f"{label} ({unit})": values}
+
+
+@xr.register_dataset_accessor("fingerpad")
+class HistoryAccessor:
+    """``history.fingerpad``: what a history knows of its plan, scene, force, errors and
+    receptors.
+    """
+
+    def __init__(self, history: xr.Dataset) -> None:
+        self._history = history
+
+    @property
+    def plan(self) -> Plan:
+        """The plan of the run; of its last run, where a tolerance took several."""
+        return Plan.from_dict(json.loads(self._history.attrs["plan"]))
+
+    @property
+    def scene(self) -> Scene:
+        """The scene; see :func:`scene_of`."""
+        return scene_of(self._history)
+
+    @property
+    def force_N(self) -> xr.DataArray:
+        """Normal force (time) in N, of the scene's contact length."""
+        force = self._history["force"] * self.scene.specimen.contact_length
+        return force.assign_attrs(units="N", long_name="normal force, compression positive")
+
+    @property
+    def errors(self) -> dict[str, Any]:
+        """Relative errors that the run estimates of itself.
+
+        Returns
+        -------
+        dict
+            ``legs``: at the end of each leg; ``largest``: of any step; ``covers``: the quantities;
+            ``asked``: the tolerance, None where there is none.
+        """
+        attributes = self._history.attrs
+        asked = float(attributes.get("asked_error", np.nan))
+        return {
+            "legs": json.loads(attributes["estimated_error_of_legs"]),
+            "largest": float(attributes["largest_error"]),
+            "covers": attributes["error_covers"],
+            "asked": asked if np.isfinite(asked) else None,
+        }
+
+    def receptor(self, depth: float, offset: float = 0.0) -> xr.Dataset:
+        """The history at one receptor.
+
+        Parameters
+        ----------
+        depth, offset
+            m, below the undeformed skin and to the right of its middle.
+
+        Raises
+        ------
+        KeyError
+            There is no receptor within 1 um of that place.
+        """
+        return self._history.isel(receptor=receptor_index(self._history, depth, offset))
+
+
+def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
+    """Index of the receptor at a depth and offset (m). Raises KeyError if there is none."""
+    depths, offsets = (history.variables[f"receptor_{name}"].values for name in ("depth", "offset"))
+    miss = np.hypot(depths - depth, offsets - offset)
+    if not len(miss) or miss.min() > 1e-6:
+        raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
+    return int(miss.argmin())

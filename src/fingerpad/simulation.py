@@ -9,9 +9,10 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from fingerpad.compiled import compiling
@@ -32,7 +33,6 @@ from fingerpad.mechanics.stepping import (
 )
 from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
-from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.errors import estimated_error, own_errors, stroke_of
 from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
@@ -46,11 +46,11 @@ from fingerpad.planning.unbounded import (
     seen_corners,
 )
 from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.respond import respond
 from fingerpad.results import (
     FIELDS,
-    Arrays,
     add_snapshots,
-    arrays,
+    history_of,
     peak_memory_MB,
     provenance,
     skin_arc,
@@ -62,9 +62,6 @@ from fingerpad.specimen.measures import below_outline, below_skin, skin_ends, to
 from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.motion import INSTANT, NO_TIME, among, apart
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 _plan = plan
 
@@ -114,23 +111,11 @@ def simulate(
         history up to the last converged step. A KeyboardInterrupt has the same ``dataset``, if a
         step had converged.
     """
-    return _labelled(lambda: solve(load_scene(scene), plan, mesh, progress, fields))
-
-
-def solve(
-    scene: Scene,
-    plan: Plan | None = None,
-    mesh: PadMesh | None = None,
-    progress: Callable[[dict[str, Any]], None] | None = None,
-    fields: bool = False,
-) -> Arrays:
-    """:func:`simulate` without labels, for who only writes its result: so is the ``dataset`` of
-    what it raises.
-    """
+    scene = load_scene(scene)
     chosen = plan or _plan(scene)
     with threadpool_limits(1):
-        history = Simulation(scene, chosen, mesh, fields).solve(progress)
-        runs = [_run_summary(history)]
+        history = Simulation(scene, chosen, mesh, fields).run(progress)
+        runs = [_outcome(history)]
         why_not = "a mesh was given" if mesh is not None else ""
         while mesh is None:
             following = refined(
@@ -144,14 +129,14 @@ def solve(
                 why_not = following
                 break
             try:
-                again = Simulation(scene, following, None, fields).solve(progress)
+                again = Simulation(scene, following, None, fields).run(progress)
             except NonConvergence:
                 why_not = f"the refined run on {following.nodes} nodes did not converge"
                 break
             except KeyboardInterrupt as stop:
                 stop.dataset = history  # the run before is whole
                 raise
-            runs.append(_run_summary(again))
+            runs.append(_outcome(again))
             chosen, history = following, again
     missed = chosen.missed(history.attrs["estimated_error"])
     history.attrs |= {
@@ -162,17 +147,7 @@ def solve(
     return history
 
 
-def _labelled(run: Callable[[], Arrays]) -> xr.Dataset:
-    """History of a ``run`` with labels; so is the one its exceptions carry."""
-    try:
-        return run().labelled()
-    except (NonConvergence, KeyboardInterrupt) as stop:
-        if getattr(stop, "dataset", None) is not None:
-            stop.dataset = stop.dataset.labelled()
-        raise
-
-
-def _run_summary(history: Arrays) -> dict[str, Any]:
+def _outcome(history: xr.Dataset) -> dict[str, Any]:
     """What is kept of a run that may be run again: its nodes and its own estimate of its error."""
     return {
         "nodes": json.loads(history.attrs["cost"])["nodes"],
@@ -185,11 +160,11 @@ class Simulation:
 
     def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None, fields: bool = False):
         self.cpu, self.wall, self.compiling = time.process_time(), time.perf_counter(), compiling()
-        self.scene, self.plan = scene, plan
+        self.scene, self.plan, self.parts = scene, plan, plan.parts(scene)
         self.whole = (mesh or mesh_for(scene, plan)).elevated(plan.element)
-        self.mesh = self.whole.right_half() if plan.effects["symmetry"].on else self.whole
+        self.mesh = self.whole.right_half() if self.parts.half else self.whole
         self.share = 0.5 if self.mesh.half else 1.0
-        specimen = scene.specimen
+        specimen = self.parts.scene.specimen
         self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
         self.profile = scene.stimulus.at(plan.surface.smoothing, plan.contact_edge)
         self.body, instantaneous = self._body()
@@ -205,20 +180,16 @@ class Simulation:
         if fields:
             self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None)
             observers.append(self.fields)
-        friction = scene.friction if plan.effects["friction"].on else None
         soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
         tolerance = {"force_tolerance": plan.newton_tolerance} if plan.newton_tolerance else {}
         settings = NewtonSettings(single=soft, **tolerance)
         self.stepper = QuasiStatic(
-            self.body, self.skin, self.profile, settings, observers, friction=friction
+            self.body, self.skin, self.profile, settings, observers, friction=self.parts.friction
         )
         self._require_room()
-        for name, effect in EFFECTS.items():
-            if effect.compose and name in plan.effects and plan.effects[name].on:
-                effect.compose(self)
 
     def _body(self):
-        specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
+        specimen, plan, mesh = self.parts.scene.specimen, self.plan, self.mesh
         fixed = np.zeros(mesh.points.shape, bool)
         for name in mesh.fixed:
             fixed[np.unique(mesh.curves[name])] = True
@@ -233,10 +204,10 @@ class Simulation:
             specimen.moduli,
         )
         shear = known.shear_long_term if plan.state == "long_term" else known.shear_instantaneous
-        prony = self.prony if plan.effects["viscoelasticity"].on else None
+        prony = self.prony if self.parts.relaxes else None
         laws = assign([(layer.law.law, layer.law.constants) for layer in layers], mesh.region)
         args = (space, shear[mesh.region], known.bulk[mesh.region], prony)
-        if plan.effects["finite_strain"].on:
+        if self.parts.large_strain:
             pointwise = EDGE_STIFFNESS if self.profile.singular else None
             body = FiniteStrainBody(*args, pointwise=pointwise, laws=laws)
         else:
@@ -248,7 +219,7 @@ class Simulation:
         depth, offset = (
             grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij")
         )
-        ridges = self.scene.specimen.ridges if self.plan.effects["ridges"].on else None
+        ridges = self.parts.ridges
         if ridges is not None and ridges.outer is not None:
             points = below_outline(self.scene.specimen.outline, depth, offset)
         else:
@@ -290,10 +261,6 @@ class Simulation:
 
     def run(self, progress) -> xr.Dataset:
         """The history; ``progress`` as in :func:`simulate`."""
-        return _labelled(lambda: self.solve(progress))
-
-    def solve(self, progress) -> Arrays:
-        """The same without labels."""
         states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
         done: list[Record] = []
         # one a leg and time: of the increments of a steady leg, all at one time, the last
@@ -596,7 +563,7 @@ class Simulation:
             "factorisations": int(self.stepper.factorisations),
             "linear_solver": self.stepper.solver.name,
         }
-        history = arrays(
+        history = history_of(
             out,
             coordinates,
             {
@@ -637,14 +604,11 @@ class Simulation:
             )
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
-            from fingerpad.receptors.respond import respond  # here, for xarray is slow to import
-
-            history = Arrays.of(history.labelled().merge(respond(history.labelled(), wanted)))
+            history = history.merge(respond(history, wanted))
         if worst:
             comment = f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
-            for name in ("peak_pressure", "contact_pressure", "centre_pressure")[
-                : 2 + worst.centre
-            ]:
+            names = ["peak_pressure", "contact_pressure"] + ["centre_pressure"] * worst.centre
+            for name in names:
                 history[name].attrs["comment"] = comment
         return history
 

@@ -15,7 +15,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.receptors.laws import rate_by_leg
-from fingerpad.results import scene_of
+from fingerpad.results import receptor_index, scene_of
 from fingerpad.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -80,20 +80,6 @@ def force_gf(history: xr.Dataset) -> np.ndarray:
     """Normal force in gram-force (time): line load times the scene's contact length."""
     length = scene_of(history).specimen.contact_length
     return history.variables["force"].values * length / parse_quantity("1 gf", "force")
-
-
-def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
-    """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none
-    there.
-    """
-    miss = np.hypot(
-        history.variables["receptor_depth"].values - depth,
-        history.variables["receptor_offset"].values - offset,
-    )
-    index = int(miss.argmin())
-    if miss[index] > 1e-6:
-        raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
-    return index
 
 
 def receptors_at(history: xr.Dataset, depth: float) -> np.ndarray:

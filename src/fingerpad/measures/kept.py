@@ -1,4 +1,4 @@
-"""What is made of a history and asked for again, kept as long as the history is."""
+"""What is computed from a history once: results kept as long as the history, and lazy mappings."""
 
 from __future__ import annotations
 
@@ -9,45 +9,46 @@ from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import xarray as xr
 
-Further = ParamSpec("Further")
-Made = TypeVar("Made")
+Options = ParamSpec("Options")
+Result = TypeVar("Result")
 
 
 def kept(
-    make: Callable[Concatenate[xr.Dataset, Further], Made],
-) -> Callable[Concatenate[xr.Dataset, Further], Made]:
-    """The function, which makes something of a history, not called again for the same one: neither
-    of the two is changed.
+    function: Callable[Concatenate[xr.Dataset, Options], Result],
+) -> Callable[Concatenate[xr.Dataset, Options], Result]:
+    """Decorator: a function of a history is called once for each history and its other arguments.
+
+    The result is dropped with the history. Neither of the two may be changed.
     """
-    made: dict[tuple, Made] = {}
+    results: dict[tuple, Result] = {}
 
-    @wraps(make)
-    def found(history: xr.Dataset, *further: Further.args, **named: Further.kwargs) -> Made:
-        key = (id(history), further, tuple(named.items()))
-        if key not in made:
-            new = make(history, *further, **named)
-            if new is history:  # which would keep itself
-                return new
-            made[key] = new
-            weakref.finalize(history, made.pop, key, None)
-        return made[key]
+    @wraps(function)
+    def cached(history: xr.Dataset, *options: Options.args, **named: Options.kwargs) -> Result:
+        key = (id(history), options, tuple(named.items()))
+        if key not in results:
+            result = function(history, *options, **named)
+            if result is history:  # which would keep itself
+                return result
+            results[key] = result
+            weakref.finalize(history, results.pop, key, None)
+        return results[key]
 
-    return found
+    return cached
 
 
-class Each(Mapping):
-    """Name -> what `make` makes of it, when first asked for, under the names of another mapping."""
+class LazyMapping(Mapping):
+    """Name -> what a function makes of the name, called when it is first asked for."""
 
-    def __init__(self, make: Callable[[str], Any], names: Iterable[str]) -> None:
-        self._make, self._names = make, tuple(names)
-        self._made: dict[str, Any] = {}
+    def __init__(self, function: Callable[[str], Any], names: Iterable[str]) -> None:
+        self._function, self._names = function, tuple(names)
+        self._values: dict[str, Any] = {}
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._names:
             raise KeyError(name)
-        if name not in self._made:
-            self._made[name] = self._make(name)
-        return self._made[name]
+        if name not in self._values:
+            self._values[name] = self._function(name)
+        return self._values[name]
 
     def __contains__(self, name: object) -> bool:
         return name in self._names  # without making it, as Mapping would
@@ -57,3 +58,7 @@ class Each(Mapping):
 
     def __len__(self) -> int:
         return len(self._names)
+
+
+Each = LazyMapping
+"""Its old name."""

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import xarray as xr
 
-from fingerpad.measures.kept import Each
+from fingerpad.measures.kept import LazyMapping
 from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import PadMesh
@@ -24,15 +24,13 @@ Values = Mapping[str, float]
 """Condition -> value; the condition of a single number is empty."""
 
 
-class Together(Mapping):
-    """Histories of many scenes by name, those of strokes `loaded` as well, and what takes several
-    of them, made once.
-    """
+class Runs(Mapping):
+    """Histories of many scenes by name; of strokes also their `loaded` outputs, made once."""
 
     def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
         self._histories = histories
-        self.strokes = Each(lambda scene: loaded(histories[scene]), histories)
-        self._made: dict[Callable, Any] = {}
+        self.strokes = LazyMapping(lambda scene: loaded(histories[scene]), histories)
+        self._results: dict[Callable, Any] = {}
 
     def __getitem__(self, scene: str) -> xr.Dataset:
         return self._histories[scene]
@@ -43,13 +41,21 @@ class Together(Mapping):
     def __len__(self) -> int:
         return len(self._histories)
 
-    def once(self, make: Callable[[Together], Any]) -> Any:
-        """``make(self)``, made when first asked for. Raises KeyError, each time, if a scene was not
-        simulated.
+    def once(self, function: Callable[[Runs], Any]) -> Any:
+        """``function(self)``, called when first asked for.
+
+        Raises
+        ------
+        KeyError
+            Each time, if a scene was not simulated.
         """
-        if make not in self._made:
-            self._made[make] = make(self)
-        return self._made[make]
+        if function not in self._results:
+            self._results[function] = function(self)
+        return self._results[function]
+
+
+Together = Runs
+"""Its old name."""
 
 
 def anywhere(scene: Scene) -> bool:
@@ -72,7 +78,7 @@ class Measure:
     of
         What `read` takes; of a stroke its `loaded` outputs.
     beside
-        Whether `read` takes, as second argument, all histories `Together`.
+        Whether `read` takes, as second argument, all histories, as `Runs`.
     """
 
     name: str
@@ -83,7 +89,7 @@ class Measure:
     beside: bool = False
 
     def __call__(
-        self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None
+        self, subject: Scene | PadMesh | xr.Dataset, runs: Runs | None = None
     ) -> dict[str, float]:
         subject = loaded(subject) if self.of == "stroke" else subject
         found = self.read(subject, runs) if self.beside else self.read(subject)
@@ -114,7 +120,7 @@ def measures_of(module: ModuleType) -> dict[str, Measure]:
     }
 
 
-# --- kinds of scenes -------------------------------------------------------------------------------------
+# --- kinds of scenes
 
 
 def named(scenes: Iterable[str]) -> Callable[[Scene], bool]:

@@ -1,5 +1,5 @@
-"""What is not to be had: plans that would need more than the machine has end here, before anything
-is allocated.
+"""Limits: plans that need more than the machine has are refused here, before anything is
+allocated.
 """
 
 from __future__ import annotations
@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from fingerpad.planning.rules import Rules
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import MeshSize
 
@@ -19,7 +18,7 @@ class PlanError(ValueError):
     """The scene asks for a combination that cannot be planned; the message is one line."""
 
 
-def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
+def check_size(scene: Scene, size: MeshSize, rules: Any) -> None:
     """Refuses meshes of more nodes than are allowed, from above and before anything is
     allocated.
     """
@@ -38,19 +37,9 @@ def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
             f"{key}: edges of {micrometres(size.skin_edge)} um make {nodes:.2g} nodes; "
             f"allowed: {rules.most_nodes:g} nodes, edges of about {micrometres(least)} um"
         )
-    if ridges is not None:
-        from fingerpad.specimen.ridges import wave_of
-
-        wave = wave_of(ridges.inner)
-        nodes = 8 * 20 * 8 * (ridges.half_width + ridges.inner.pitch) / wave
-        if nodes > rules.most_nodes:
-            raise PlanError(
-                f"specimen.ridges.inner.pitch: {ridges.half_width / wave:.2g} ridges to either side make {nodes:.2g} nodes; "
-                f"allowed: {rules.most_nodes:g} nodes, a pitch of about {micrometres(wave * nodes / rules.most_nodes)} um"
-            )
 
 
-def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
+def check_memory(scene: Scene, nodes: int, steps: int, rules: Any) -> None:
     """Refuses what would need more memory than the machine has, or more nodes than are allowed."""
     (memory, limited), receptors = _memory(), receptors_of(scene)
     needed = {
@@ -65,8 +54,10 @@ def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
     if sum(needed.values()) > rules.most_memory * memory:
         worst = max(needed, key=needed.get)
         raise PlanError(
-            f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about {sum(needed.values()) / 1e9:.2g} GB "
-            f"of memory; allowed: {rules.most_memory * memory / 1e9:.2g} GB on this machine{limited}"
+            f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about "
+            f"{sum(needed.values()) / 1e9:.2g} GB "
+            f"of memory; allowed: {rules.most_memory * memory / 1e9:.2g} GB on this "
+            f"machine{limited}"
         )
 
 

@@ -47,7 +47,8 @@ def check_over_pad(scene: Scene, external: PadMesh | None) -> None:
         name = getattr(scene.stimulus.csv, "name", "x, y")
         there = f"from x = {first * 1e3:.4g} mm to {last * 1e3:.4g} mm"
         raise PlanError(
-            f"{scene.name}: stimulus.csv: '{name}' has points {there}, none of them over the finger; "
+            f"{scene.name}: stimulus.csv: '{name}' has points {there}, none of them over the "
+            "finger; "
             "allowed: points around x = 0, which comes down on its apex"
         )
 
@@ -138,7 +139,10 @@ def check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules:
         return
     force = pressing_force(scene, pad, contact)
     least = rules.least_half_width * 1e9
-    said = f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: {least:g} nm or more"
+    said = (
+        f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: "
+        f"{least:g} nm or more"
+    )
     usual = max(force, _USUAL_FORCE / scene.specimen.contact_length)
     if pad.pressed(usual, max(scene.stimulus.convexity, 0.0)).half_width >= rules.least_half_width:
         i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if leg.presses)

@@ -159,7 +159,8 @@ def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str
     if by_hand.element in fitting:
         return by_hand.element
     raise PlanError(
-        f"accuracy.element: {by_hand.element} does not fit the mesh of {kind}; allowed: {' or '.join(dict.fromkeys(fitting))}"
+        f"accuracy.element: {by_hand.element} does not fit the mesh of {kind}; allowed: "
+        f"{' or '.join(dict.fromkeys(fitting))}"
     )
 
 
@@ -187,21 +188,21 @@ def raised_for(
         return external, ""
     raised = external.raised()
     return raised, (
-        f"linear quads raised to quadratic ones of the same corners: they would be wrong by {percent(error(external))}, "
+        "linear quads raised to quadratic ones of the same corners: they would be wrong by "
+        f"{percent(error(external))}, "
         f"{percent(tolerance)} is asked, these by {percent(error(raised))}"
     )
 
 
 def wander_of(
-    scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules
+    scene: Scene, pad: PadEstimate, profile: Profile, friction: float | None, rules: Rules
 ) -> float:
     """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as
     steep as the surface.
     """
     way = np.cumsum([leg.along for leg in scene.motion])
-    return (
-        min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
-    )
+    steep = min(profile.steepness * pad.apex_radius, np.abs(way).max())
+    return steep + (0.0 if friction is None else rules.skin_stretch)
 
 
 def mesh_size_for(
@@ -332,7 +333,8 @@ def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
         error = max(rules.edge_error * edge / profile.reach[1], rules.edge_floor)
         return (
             error,
-            "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges",
+            "at a true edge the skin is held or is not, by a node; a fillet that is resolved "
+            "converges",
         )
     said = f"edges of {micrometres(edge)} um on {micrometres(rounding)} um of a rounded edge"
     return rules.fillet_error * (edge / rounding) ** rules.fillet_order, said

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from fingerpad.planning.estimates import ContactEstimate, PadEstimate
-    from fingerpad.scenes.scene import Scene
-    from fingerpad.specimen.pad import PadMesh
-    from fingerpad.stimuli.profile import Profile
+from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.scenes.scene import Scene
+from fingerpad.scenes.specimen import Ridges
+from fingerpad.specimen.pad import MeshSize, PadMesh
+from fingerpad.stimuli.profile import Profile
 
 
 @dataclass(frozen=True)
@@ -53,26 +53,123 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class PlannedEffect:
-    """An effect that a plan decides on.
+class Parts:
+    """What the effects that are on make of a simulation.
 
-    Attributes:
-        name: in the scene language. question: that decides. decide: of a case. always: what is done
-        whatever the rules say. possible: whether it can be asked for at all where ``decide`` has
-        left it out. after: effects whose decisions it asks about. rules: class of its rules, each a
-        :func:`rule`; None for an effect without. dearer: cost with it over without. compose: what
-        it changes in a composed :class:`fingerpad.simulation.Simulation`, before that runs. shown:
-        the scenes that show it. title, marker: in the picture of the study.
+    Attributes
+    ----------
+    scene
+        As it is solved; the history keeps the scene that was asked for.
+    half
+        Whether half the pad is solved.
+    friction
+        Coefficient between skin and stimulus; None: no friction.
+    relaxes
+        Whether stress relaxes in time.
+    large_strain
+        Whether strains and rotations are large.
+    ridges
+        Of the mesh; None: no ridges.
+    """
+
+    scene: Scene
+    half: bool = False
+    friction: float | None = None
+    relaxes: bool = False
+    large_strain: bool = False
+    ridges: Ridges | None = None
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """What it means to leave an effect out.
+
+    Attributes
+    ----------
+    error
+        Relative, in the headline quantities.
+    moduli
+        With which the scene is solved, "long_term" or "instantaneous".
+    """
+
+    error: float = 0.0
+    moduli: str = "long_term"
+
+
+@dataclass(frozen=True)
+class Meshed:
+    """What an effect makes of a mesh that is planned.
+
+    Attributes
+    ----------
+    size
+        The mesh with the edges that the effect needs.
+    edge
+        m, of the skin under the apex.
+    error
+        Relative, left in the elements that the effect asked for.
+    said
+        How fine the mesh is, for the reason of the effect.
+    """
+
+    size: MeshSize
+    edge: float
+    error: float
+    said: str
+
+
+def _unchanged(parts: Parts) -> Parts:
+    return parts
+
+
+@dataclass(frozen=True)
+class PlannedEffect:
+    """An effect that a plan decides on: all that the package knows of it.
+
+    Attributes
+    ----------
+    name
+        In the scene language.
+    question
+        What the decision answers.
+    decide
+        The decision on a case.
+    turn_on
+        What it changes in the parts of a simulation: the one way by which it acts.
+    possible
+        Whether a scene can ask for it where ``decide`` has left it out.
+    after
+        Effects whose decisions it asks about.
+    left_out
+        What leaving it out means for a case.
+    instead
+        What is done where it is left out, for sentences about its error.
+    mesh
+        What it makes of the planned mesh (a case, its size, its edge at the apex in m); None:
+        nothing.
+    rules
+        Class of its rules, each a :func:`rule`; None for an effect without.
+    dearer
+        Cost with it over cost without.
+    shown
+        The scenes that show it.
+    always
+        What is done whatever the rules say.
+    title, marker
+        In the picture of the study.
     """
 
     name: str
     question: str
     decide: Callable[[Case], Effect]
+    turn_on: Callable[[Parts], Parts] = _unchanged
     possible: Callable[[Case], bool] = lambda case: True
     after: tuple[str, ...] = ()
+    left_out: Callable[[Case], LeftOut] = lambda case: LeftOut()
+    instead: str = ""
+    mesh: Callable[[Case, MeshSize, float], Meshed] | None = None
     rules: type | None = None
     dearer: Callable[[Any], float] = lambda rules: 1.0
-    compose: Callable[[Any], None] | None = None
     shown: tuple[Shown, ...] = ()
     always: str = ""
     title: str = ""
@@ -87,4 +184,7 @@ def rule(value: Any, decides: str, evidence: str = "") -> Any:
     """A rule of the planner: its value, what it decides and where the evidence is (see
     :data:`OWN_PAIR`).
     """
-    return field(default=value, metadata={"decides": decides, "evidence": evidence})
+    metadata = {"decides": decides, "evidence": evidence}
+    if isinstance(value, dict):
+        return field(default_factory=value.copy, metadata=metadata)
+    return field(default=value, metadata=metadata)

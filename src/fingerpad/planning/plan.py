@@ -1,29 +1,21 @@
-"""Scene -> plan: which effects the scene calls for, which discretisation, why, and what it will
-cost.
+"""Scene -> plan: which effects the scene calls for, which discretisation, why, and the cost.
 
 Nothing is solved here. Every choice carries a sentence with the number that decided it, and every
 choice can be overridden in the scene. The thresholds and measured constants stand together in
-:class:`Rules`.
+:class:`fingerpad.planning.rules.Rules`.
 """
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fingerpad.planning.bounds import (
-    PlanError,
-    check_memory,
-    check_size,
-    micrometres,
-    percent,
-    receptors_of,
-)
+from fingerpad.planning.bounds import PlanError, check_memory, check_size, micrometres, percent
 from fingerpad.planning.contact import (
     check_over_pad,
     check_width,
@@ -38,7 +30,6 @@ from fingerpad.planning.contact import (
     worst_contact,
 )
 from fingerpad.planning.discretisation import (
-    edges_chosen,
     edges_error,
     element_for,
     height_at_receptors,
@@ -49,282 +40,66 @@ from fingerpad.planning.discretisation import (
     usual_edge,
     wander_of,
 )
-from fingerpad.planning.effect import Case, Effect
-from fingerpad.planning.effects import EFFECTS, finite_strain, in_order, viscoelasticity
-from fingerpad.planning.effects import ridges as ridge_effect
+from fingerpad.planning.effect import Case, Effect, Parts
+from fingerpad.planning.effects import EFFECTS, in_order, parts_of
 from fingerpad.planning.errors import COARSER, estimated_error, own_errors, stroke_of
 from fingerpad.planning.estimates import ContactEstimate
-from fingerpad.planning.rules import RULES, Rules
-from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
+from fingerpad.planning.plan_data import Plan, read_plan
+from fingerpad.planning.rules import RULES, Preset, Rules
+from fingerpad.planning.schedule import expected_states, schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
-from fingerpad.planning.surface import Surface, surface_of
-from fingerpad.planning.unbounded import (
-    OF_STROKES,
-    Unbounded,
-    ends_unbounded,
-    in_words,
-    seen_corners,
-)
-from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.planning.surface import surface_of
+from fingerpad.planning.unbounded import Unbounded, ends_unbounded, in_words, seen_corners
+from fingerpad.scenes.scene import Discretisation, Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge, skin_ends
 from fingerpad.specimen.pad import MeshSize, PadMesh
+from fingerpad.stimuli.profile import Profile
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+__all__ = ["RULES", "Plan", "PlanError", "Rules", "companion", "plan", "read_plan", "refined"]
 
-_OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
 _WORTH = 0.9  # of an error, to which a finer mesh must bring it to be run on
-_SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Everything decided about a scene before it is solved.
+def plan(scene: Scene | str | Path | Mapping[str, Any], rules: Rules | None = None) -> Plan:
+    """Decide effects and discretisation of a scene.
 
-    Attributes:
-        effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when
-        viscosity is off ("long_term" or "instantaneous"). element: key of the element. mesh_size:
-        of a built mesh, None for an external one. contact: the estimate behind the choices.
-        steps_per_leg: time steps or load increments of each leg; steps: all of them, of strokes,
-        whose error chooses them, as many as are expected; outputs: of the history. slide_step: m,
-        longest step of a slide; None when steps are given by hand. timed: does time matter? nodes,
-        smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
-        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline
-        quantities; small_strain_error: the part of it that small strain is to blame for;
-        least_error: at least this because of the profile's edges or of the elements that receptors
-        are in. error_from: what most of it comes from. asked_error: the tolerance, None where none
-        is asked for; once: whether it is tried for once only. unbounded: where contact is expected
-        at which pressure has no bound, so that a peak is the mesh's; the run says where it was.
-        unresolved_edge: whether edges are rounded, but finer than the mesh can tell. errors: on a
-        mesh of one's own, by quantity; receptor_height: there the largest height of elements that
-        receptors are in, over their depth. specimen: sentences on what is touched, and what of it
-        the scene left out. surface: what the mesh makes of a measured profile. stride: so many
-        steps are made one. strokes: does the pad move along the surface, so that errors are of a
-        way? every: of so many outputs of presses and holds a state is found at one, for more are
-        asked for than the accuracy needs.
+    Parameters
+    ----------
+    scene
+        A checked scene, or a file or dictionary of one.
+    rules
+        Thresholds (default: :data:`RULES`).
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    SceneError
+        The file or the dictionary is wrong.
+    PlanError
+        An override asks for what the scene cannot have, or the mesh for more than the machine has.
+    MeshError
+        An external mesh cannot be read, or the pad has no room for its ridges.
     """
-
-    effects: dict[str, Effect]
-    state: str
-    element: str
-    mesh_size: MeshSize | None
-    contact: ContactEstimate
-    steps_per_leg: int
-    slide_step: float | None
-    steps: int
-    timed: bool
-    nodes: int
-    smallest_edge: float
-    inertia_ratio: float
-    contact_edge: float
-    estimated_error: float
-    predicted_cost_s: float
-    small_strain_error: float = 0.0
-    least_error: float = 0.0
-    error_from: str = ""
-    asked_error: float | None = None
-    once: bool = False
-    unbounded: Unbounded = Unbounded()
-    specimen: tuple[str, ...] = ()
-    surface: Surface = Surface()
-    stride: int = 1
-    strokes: bool = False
-    outputs: int = 0
-    every: int = 1
-    unresolved_edge: bool = False
-    errors: dict[str, float] = field(default_factory=dict)
-    receptor_height: float | None = None
-
-    @property
-    def covers(self) -> str:
-        """The quantities that the error is of."""
-        return self.unbounded.covers + self.strokes * OF_STROKES
-
-    def missed(self, error: float | None = None) -> str | None:
-        """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where
-        it does not.
-        """
-        planned = error is None
-        error = self.estimated_error if planned else error
-        if self.asked_error is None or error <= self.asked_error * (1 + 1e-9):
-            return None
-        had = "not to be had: expected" if planned else "got"
-        return f"asked {percent(self.asked_error)}, {had} {percent(error)}: {self.error_from}"
-
-    def result_bytes(self, scene: Scene, fields: bool = False) -> float:
-        """Bytes that the files of a run of ``scene`` will take at most, roughly; ``fields``: with
-        those for ParaView.
-        """
-        nodes = self.nodes * (2 if self.effects["symmetry"].on else 1)
-        each_time = 8 * (20 + 7 * _SKIN_NODES * nodes**0.5 + 13 * receptors_of(scene))
-        snapshots = len(scene.outputs.snapshots) or int(fields)
-        return (
-            3e5 + (self.outputs + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
-        )
-
-    @property
-    def stepping(self) -> tuple[int, bool, float | None, int, int]:
-        """What :func:`schedule` needs to know: steps of a leg, does time matter, longest step of a
-        slide (m), stride, every.
-        """
-        return self.steps_per_leg, self.timed, self.slide_step, self.stride, self.every
-
-    @property
-    def states_per_leg(self) -> float:
-        """As many steps of a leg as its time error is of."""
-        return self.steps_per_leg / (self.stride * self.every)
-
-    @property
-    def between(self) -> tuple[float, float] | None:
-        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what
-        lies between may be off.
-
-        The latter is the mesh's, whatever the stride: twice as much hides bumps that bear little of
-        the load.
-        """
-        return (
-            (self.slide_step * self.stride, BETWEEN * self.contact_edge)
-            if self.strokes and self.slide_step
-            else None
-        )
-
-    @property
-    def newton_tolerance(self) -> float | None:
-        """Force out of balance, over that of the contact, that a stroke leaves: as good as its mesh
-        is; None: the usual one.
-        """
-        return min(NEWTON * self.contact_edge, _OUT_OF_BALANCE) if self.between else None
-
-    @property
-    def discretisation(self) -> dict[str, Any]:
-        """Element, nodes, smallest edge and steps, as printed and as written to plan.json."""
-        out = {
-            "element": self.element,
-            "nodes": self.nodes,
-            "smallest_edge_um": round(self.smallest_edge * 1e6, 3),
-            "steps": self.steps,
-            "outputs": self.outputs,
-        }
-        if self.mesh_size is not None:
-            out |= {
-                "contact_edge_um": round(self.contact_edge * 1e6, 3),
-                "skin_edge_um": round(self.mesh_size.skin_edge * 1e6, 3),
-                "fine_half_width_mm": round(self.mesh_size.fine_half_width * 1e3, 3),
-            }
-        if self.surface.smoothing:
-            out["profile_smoothed_um"] = round(self.surface.smoothing * 1e6, 3)
-            out["profile_moved_um"] = round(self.surface.moved * 1e6, 3)
-        return out
-
-    def to_dict(self) -> dict[str, Any]:
-        """JSON-able description (plan.json); :func:`read_plan` reads it back."""
-        return {
-            "effects": {name: asdict(effect) for name, effect in self.effects.items()},
-            "discretisation": self.discretisation,
-            "moduli_state": self.state,
-            "estimated_error": self.estimated_error,
-            "predicted_cost_s": round(self.predicted_cost_s, 2),
-            "contact_estimate_SI": asdict(self.contact),
-            "mesh_size_SI": None if self.mesh_size is None else asdict(self.mesh_size),
-            "smallest_edge_SI": self.smallest_edge,
-            "inertia_ratio": self.inertia_ratio,
-            "contact_edge_SI": self.contact_edge,
-            "steps_per_leg": self.steps_per_leg,
-            "slide_step_SI": self.slide_step,
-            "stride": self.stride,
-            "every": self.every,
-            "timed": self.timed,
-            "small_strain_error": self.small_strain_error,
-            "specimen": list(self.specimen),
-            "surface_SI": asdict(self.surface),
-            "least_error": self.least_error,
-            "error_from": self.error_from,
-            "error_covers": self.covers,
-            "asked_error": self.asked_error,
-            "tolerance_met": None if self.asked_error is None else self.missed() is None,
-            "once": self.once,
-            "strokes": self.strokes,
-            "unbounded_peak": bool(self.unbounded),
-            "unbounded_at": list(self.unbounded.places),
-            "unbounded_at_centre": self.unbounded.centre,
-            "unresolved_edge": self.unresolved_edge,
-            "errors_by_quantity": self.errors,
-            "receptor_height": self.receptor_height,
-        }
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> Plan:
-        """The plan of which :meth:`to_dict` is the description."""
-        size = data["mesh_size_SI"]
-        if size is not None:
-            size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
-        known, places = (
-            data["discretisation"],
-            data.get("unbounded_at", ["an edge"] if data["unbounded_peak"] else []),
-        )
-        unbounded = Unbounded(tuple(places), data.get("unbounded_at_centre", False))
-        return cls(
-            {name: Effect(**effect) for name, effect in data["effects"].items()},
-            data["moduli_state"],
-            known["element"],
-            size,
-            ContactEstimate(**data["contact_estimate_SI"]),
-            data["steps_per_leg"],
-            data["slide_step_SI"],
-            known["steps"],
-            data["timed"],
-            known["nodes"],
-            data["smallest_edge_SI"],
-            data["inertia_ratio"],
-            data["contact_edge_SI"],
-            data["estimated_error"],
-            data["predicted_cost_s"],
-            data["small_strain_error"],
-            data["least_error"],
-            data["error_from"],
-            data["asked_error"],
-            data["once"],
-            unbounded,
-            tuple(data["specimen"]),
-            Surface(**data["surface_SI"]),
-            data["stride"],
-            data.get("strokes", False),
-            known.get("outputs", known["steps"]),
-            data.get("every", 1),
-            data.get("unresolved_edge", False),
-            data.get("errors_by_quantity", {}),
-            data.get("receptor_height"),
-        )
-
-    def write(self, path: str | Path) -> None:
-        """Write plan.json, whole or not at all."""
-        from fingerpad.files import write_text
-
-        write_text(path, json.dumps(self.to_dict(), indent=2) + "\n")
+    return _planned(load_scene(scene), rules or RULES)
 
 
-def plan(
-    scene: Scene | str | Path | Mapping[str, Any],
-    rules: Rules | None = None,
-    found: float | None = None,
-    tolerance: float | None = None,
+def _planned(
+    scene: Scene, rules: Rules, narrowest: float | None = None, aim: float | None = None
 ) -> Plan:
-    """Decide effects and discretisation of ``scene``.
+    """The plan of a scene.
 
-    Args:
-        scene: a checked scene, or a file or dictionary of one. rules: thresholds (default:
-        :data:`RULES`). found: half-width m of the narrowest contact that a run has shown, in place
-        of the estimated one. tolerance: what the mesh is made for where that is less than the scene
-        asks.
-
-    Raises:
-        PlanError: an override asks for what the scene cannot have, or the mesh for more than the
-        machine has. MeshError: an external mesh cannot be read, or the pad has no room for its
-        ridges.
+    Parameters
+    ----------
+    narrowest
+        m, half-width of the narrowest contact that a run has found, in place of the estimated one.
+    aim
+        Relative error that the mesh is made for where that is less than the scene asks.
     """
-    scene, rules = load_scene(scene), rules or RULES
     external = external_mesh(scene)
     measured = scene.stimulus
     check_over_pad(scene, external)
@@ -334,31 +109,21 @@ def plan(
     moves, stroke = moves_along(scene), stroke_of(scene, profile.uneven)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets
     # the sharpest convexity
-    contact = worst_contact(
-        scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0
-    )
-    contact = replace(contact, narrowest=least_half_width(scene, pad, profile, contact, found))
+    curvature = profile.convexity if moves or not profile.uneven else 0.0
+    contact = worst_contact(scene, pad, profile, curvature)
+    contact = replace(contact, narrowest=least_half_width(scene, pad, profile, contact, narrowest))
     check_width(scene, pad, contact, rules)
-    inertia, fastest = inertia_ratio_of(scene, contact)
-    if inertia > rules.inertia_limit:
-        raise PlanError(
-            f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
-            f"allowed: up to {rules.inertia_limit:g}"
-        )
-    rounding = (
-        rounding_of(scene, pad, profile, contact)
-        if profile.edges and not profile.unbounded
-        else 0.0
-    )
-    preset, by_hand = preset_for(scene, rules, contact, tolerance, stroke)
+    inertia = _inertia(scene, contact, rules)
+    rounded = profile.edges and not profile.unbounded
+    rounding = rounding_of(scene, pad, profile, contact) if rounded else 0.0
+    preset, by_hand = preset_for(scene, rules, contact, aim, stroke)
     tolerance = preset.tolerance
     case = Case(scene, profile, pad, contact, external, moves, tolerance, rules, {})
     effects = _decided(case)
-    ridges, state = (
-        scene.specimen.ridges if effects["ridges"].on else None,
-        viscoelasticity.moduli_state(case),
-    )
-    timed = effects["viscoelasticity"].on
+    parts = parts_of(scene, effects)
+    left_out = {name: EFFECTS[name].left_out(case) for name in effects}
+
+    timed = parts.relaxes
     steps_per_leg, slide_step, every = preset.steps, preset.slide_step, 1
     if by_hand and by_hand.steps:
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
@@ -367,145 +132,217 @@ def plan(
         every = steps_per_leg // preset.steps
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    time, narrowest, raised = (
-        steps_per_leg / every if timed or moves else None,
-        earliest_half_width(scene, contact, timed),
-        "",
-    )
-    bumpy = scene.stimulus.irregular
-    if external is not None:
-        own = partial(own_errors, rules=rules, bumpy=bumpy)
-
-        def on_mesh(mesh: PadMesh) -> float:
-            edge = apex_edge(mesh)
-            found = own(
-                KINDS[mesh.element].solved,
-                edge,
-                narrowest,
-                height_at_receptors(scene, mesh),
-                time,
-                stroke,
-            )
-            return max(*found.values(), edges_error(profile, edge, rounding, rules)[0])
-
-        external, raised = raised_for(by_hand, external, tolerance, on_mesh)
-    element = element_for(by_hand, external)
-    errors, height = {}, None
+    contact_error = {
+        "half_width": earliest_half_width(scene, contact, timed),
+        "steps": steps_per_leg / every if timed or moves else None,
+        "stroke": stroke,
+        "bumpy": scene.stimulus.irregular,
+        "rules": rules,
+    }
     if external is None:
-        at_receptors = 0.0
-        # on its way over a surface the contact is also flat
-        widest = worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
-        wander = wander_of(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
-        size = mesh_size_for(
-            scene, preset, profile, contact, widest.half_width, wander, rounding, rules
-        )
-        # a contact that moves leaves the middle, where a stroked pad is finer
-        edge = (
-            size.skin_edge
-            if moves
-            else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
-        )
-        at_focus = min([edge, *(each for _, each in size.focus)])
-        if ridges is not None:
-            size, at_receptors = ridge_effect.meshed(
-                scene, size, tolerance if edges_chosen(scene) else None, moves, rules
-            )
-        check_size(scene, size, ridges, rules)
-        nodes, smallest = counted(scene.specimen, size, ridges)
-        if ridges is not None:
-            layered = (
-                scene.specimen.outline,
-                size,
-                ridges,
-                scene.specimen.layers.stratum_corneum is not None,
-            )
-            effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
+        mesh = _built(case, preset, by_hand, effects, parts, rounding, contact_error)
     else:
-        size, nodes, at_receptors, height = (
-            None,
-            len(external.points),
-            0.0,
-            height_at_receptors(scene, external),
-        )
-        smallest, edge = shortest_edge(external), apex_edge(external)
-    if effects["symmetry"].on:
-        nodes = nodes // 2 + 1
+        mesh = _given(case, by_hand, rounding, contact_error)
+    nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
-    may_change = rules.profile_share * tolerance
-    pressed, force = (
+
+    surface = surface_of(
+        measured,
+        mesh.edge,
+        way_of(scene),
+        pad,
         partial(worst_contact, scene, pad, profile),
         pressing_force(scene, pad, contact),
+        rules.profile_share * tolerance,
     )
-    surface = surface_of(measured, edge, way_of(scene), pad, pressed, force, may_change)
-    around = None if size is None else size.skin_edge
-    at_edge = edge if size is None else min(edge, at_focus)
-    if size is not None and profile.edge_radius and scene.tolerance is None:
-        # presets are fine beside the face, not where it ends and the pressure is largest
-        at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
-    at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    if external is None:
-        in_contact = estimated_error(
-            edge, narrowest, time, stroke, around, rules=rules, bumpy=bumpy
-        )
-    else:
-        errors = own(element, edge, narrowest, height, time, stroke)
-        in_contact = max(errors.values())
-    mesh = surface.error + max(in_contact, at_edges, at_receptors)
-    linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
-    if (
-        linear
-        and scene.tolerance is not None
-        and "finite_strain" not in scene.effects
-        and linear + mesh > scene.tolerance
-    ):
-        effects["finite_strain"], linear = finite_strain.beside_mesh(case, mesh), 0.0
+    at_edges, edges_said = edges_error(profile, mesh.edge_at_edges, rounding, rules)
+    mesh_error = surface.error + max(mesh.in_contact, at_edges, mesh.at_receptors)
+    without = {name: left_out[name].error for name, effect in effects.items() if not effect.on}
+    for name, error in list(without.items()):
+        total = sum(without.values()) + mesh_error
+        asked = scene.tolerance is not None and name not in scene.effects
+        if error and asked and total > scene.tolerance:
+            effects[name] = Effect(
+                True,
+                f"{EFFECTS[name].instead} would be wrong by up to {error:.1%} beside the mesh's "
+                f"{mesh_error:.1%}: too much for both",
+            )
+            del without[name]
     sources = {
-        f"edges of {micrometres(edge)} um in a contact of {micrometres(narrowest)} um to either side": in_contact,
+        f"edges of {micrometres(mesh.edge)} um in a contact of "
+        f"{micrometres(contact_error['half_width'])} um to either side": mesh.in_contact,
         edges_said: at_edges,
-        f"elements {'in the mesh' if size is None else 'among ridges'} that receptors are in": at_receptors,
-        "small strain": linear,
+        f"elements {mesh.place} that receptors are in": mesh.at_receptors,
+        **{EFFECTS[name].instead: error for name, error in without.items()},
         "what the mesh cannot feel of the profile": surface.error,
     }
-    unresolved = not profile.unbounded and peak_is_unbounded(profile, at_edge, rounding, rules)
+    unresolved = peak_is_unbounded(profile, mesh.edge_at_edges, rounding, rules)
+    unresolved = unresolved and not profile.unbounded
+    final = measured.at(surface.smoothing, mesh.edge)
+    instantaneous = any(each.moduli == "instantaneous" for each in left_out.values())
     return Plan(
-        effects,
-        state,
-        element,
-        size,
-        contact,
-        steps_per_leg,
-        slide_step,
-        steps,
-        timed,
-        nodes,
-        smallest,
-        inertia,
-        edge,
-        linear + mesh,
-        _cost(nodes, steps, effects, rules),
-        linear,
-        max(at_edges, at_receptors),
-        max(sources, key=sources.get),
-        scene.tolerance,
-        scene.once,
-        _unbounded(
-            scene, measured.at(surface.smoothing, edge), external, pad, contact, edge, unresolved
-        ),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes),
-        surface,
+        effects=effects | mesh.effects,
+        state="instantaneous" if instantaneous else "long_term",
+        element=mesh.element,
+        mesh_size=mesh.size,
+        contact=contact,
+        steps_per_leg=steps_per_leg,
+        slide_step=slide_step,
+        steps=steps,
+        timed=timed,
+        nodes=nodes,
+        smallest_edge=mesh.smallest,
+        inertia_ratio=inertia,
+        contact_edge=mesh.edge,
+        estimated_error=sum(without.values()) + mesh_error,
+        predicted_cost_s=_cost(nodes, steps, effects, rules),
+        small_strain_error=sum(without.values()),
+        least_error=max(at_edges, mesh.at_receptors),
+        error_from=max(sources, key=sources.get),
+        asked_error=scene.tolerance,
+        once=scene.once,
+        unbounded=_unbounded(case, final, mesh.external, mesh.edge, unresolved),
+        specimen=(*specimen_said(scene.specimen, mesh.external), *mesh.notes, *measured.notes),
+        surface=surface,
         strokes=moves,
         outputs=outputs,
         every=every,
         unresolved_edge=unresolved,
-        errors=errors,
-        receptor_height=height,
+        errors=mesh.errors,
+        receptor_height=mesh.receptor_height,
     )
 
 
-def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: bool) -> Unbounded:
+@dataclass(frozen=True)
+class _Mesh:
+    """The mesh of a plan, and what it is expected to be wrong by.
+
+    ``edge``: m, of the skin under the apex; ``edge_at_edges``: m, where the profile has edges.
+    ``in_contact``, ``at_receptors``: relative errors. ``effects``: whose reasons name the mesh.
+    """
+
+    element: str
+    nodes: int
+    smallest: float
+    edge: float
+    edge_at_edges: float
+    in_contact: float
+    place: str
+    size: MeshSize | None = None
+    at_receptors: float = 0.0
+    effects: Mapping[str, Effect] = field(default_factory=dict)
+    external: PadMesh | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
+    receptor_height: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def _built(
+    case: Case,
+    preset: Preset,
+    by_hand: Discretisation | None,
+    effects: Mapping[str, Effect],
+    parts: Parts,
+    rounding: float,
+    contact_error: Mapping[str, Any],
+) -> _Mesh:
+    """A mesh that is built for the scene."""
+    scene, profile, pad, rules = case.scene, case.profile, case.pad, case.rules
+    # on its way over a surface the contact is also flat
+    widest = case.contact
+    if case.moves and profile.uneven:
+        widest = worst_contact(scene, pad, profile, 0.0)
+    wander = wander_of(scene, pad, profile, parts.friction, rules) if case.moves else 0.0
+    size = mesh_size_for(
+        scene, preset, profile, case.contact, widest.half_width, wander, rounding, rules
+    )
+    # a contact that moves leaves the middle, where a stroked pad is finer
+    at_apex = [] if case.moves else [edge for x, edge in size.focus if x == 0]
+    edge = min([size.skin_edge, *at_apex])
+    finest = min([edge, *(each for _, each in size.focus)])
+    at_receptors, meshed_effects = 0.0, {}
+    for name, effect in effects.items():
+        if effect.on and EFFECTS[name].mesh:
+            meshed = EFFECTS[name].mesh(case, size, edge)
+            meshed_effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
+            size, edge = meshed.size, meshed.edge
+            at_receptors = max(at_receptors, meshed.error)
+    check_size(scene, size, rules)
+    nodes, smallest = counted(scene.specimen, size, parts.ridges)
+    edge_at_edges = min(edge, finest)
+    if profile.edge_radius and scene.tolerance is None:
+        # presets are fine beside the face, not where it ends and the pressure is largest
+        grown = edge_at_edges + np.log(size.growth) * profile.edge_radius
+        edge_at_edges = min(grown, size.skin_edge)
+    return _Mesh(
+        element_for(by_hand, None),
+        nodes,
+        smallest,
+        edge,
+        edge_at_edges,
+        estimated_error(edge, body_edge=size.skin_edge, **contact_error),
+        "among ridges",
+        size,
+        at_receptors,
+        meshed_effects,
+    )
+
+
+def _given(
+    case: Case,
+    by_hand: Discretisation | None,
+    rounding: float,
+    contact_error: Mapping[str, Any],
+) -> _Mesh:
+    """The scene's own mesh, raised to quadratic elements where the accuracy needs it."""
+    scene, profile = case.scene, case.profile
+
+    def errors(mesh: PadMesh, element: str) -> dict[str, float]:
+        height = height_at_receptors(scene, mesh)
+        return own_errors(element, apex_edge(mesh), at_receptors=height, **contact_error)
+
+    def largest(mesh: PadMesh) -> float:
+        at_edges, _ = edges_error(profile, apex_edge(mesh), rounding, case.rules)
+        return max(*errors(mesh, KINDS[mesh.element].solved).values(), at_edges)
+
+    external, raised = raised_for(by_hand, case.external, case.tolerance, largest)
+    element, edge = element_for(by_hand, external), apex_edge(external)
+    by_quantity = errors(external, element)
+    return _Mesh(
+        element,
+        len(external.points),
+        shortest_edge(external),
+        edge,
+        edge,
+        max(by_quantity.values()),
+        "in the mesh",
+        external=external,
+        errors=by_quantity,
+        receptor_height=height_at_receptors(scene, external),
+        notes=tuple(filter(None, [raised])),
+    )
+
+
+def _inertia(scene: Scene, contact: ContactEstimate, rules: Rules) -> float:
+    """rho v^2 / mu of the motion, which a quasi-static solution neglects; refuses too large
+    ones.
+    """
+    inertia, fastest = inertia_ratio_of(scene, contact)
+    if inertia > rules.inertia_limit:
+        raise PlanError(
+            f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
+            f"allowed: up to {rules.inertia_limit:g}"
+        )
+    return inertia
+
+
+def _unbounded(
+    case: Case, profile: Profile, external: PadMesh | None, edge: float, unresolved: bool
+) -> Unbounded:
     """Where contact is expected at which pressure has no bound."""
-    half_width, (low, high) = contact.half_width, way_of(scene)
-    pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
+    scene, pad, half_width = case.scene, case.pad, case.contact.half_width
+    low, high = way_of(scene)
+    pressure = 2 / np.pi * pressing_force(scene, pad, case.contact) / half_width
     corners = (
         np.array(profile.edges)
         if unresolved
@@ -529,12 +366,23 @@ def refined(
     runs: int = 1,
     rules: Rules | None = None,
 ) -> Plan | str:
-    """The plan of another run of a scene that was solved as ``before`` says, or why there is none
-    ("" where none is wanted).
+    """The plan of another run of a scene whose run missed its tolerance.
 
-    Args:
-        error: what the run estimates of itself. narrowest: half-width m of the narrowest contact
-        that it found. runs: so far.
+    Parameters
+    ----------
+    before
+        The plan of the run.
+    error
+        Relative, what the run estimates of itself.
+    narrowest
+        m, half-width of the narrowest contact that it found.
+    runs
+        So far.
+
+    Returns
+    -------
+    Plan or str
+        The plan, or why there is none ("" where none is wanted).
     """
     rules = rules or RULES
     if before.missed(error) is None or before.once:
@@ -544,12 +392,8 @@ def refined(
     if runs >= rules.most_runs:
         return f"after {runs} runs"
     # what misses by some share is aimed at by as much below
-    finer = plan(
-        scene,
-        rules,
-        narrowest,
-        before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25)),
-    )
+    aim = before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25))
+    finer = _planned(scene, rules, narrowest, aim)
     if finer.estimated_error > _WORTH * error:
         return "a finer mesh would not help"
     if finer.nodes > rules.most_nodes_again:
@@ -568,12 +412,11 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
         schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every)
     )
     steps = expected_states(scheduled, own.slide_step, stride)
-    out = replace(own, stride=stride, steps=steps, outputs=len(scheduled))
+    out, parts = replace(own, stride=stride, steps=steps, outputs=len(scheduled)), own.parts(scene)
     if own.mesh_size is not None:
         size = own.mesh_size.coarser(coarser)
-        ridges = scene.specimen.ridges if own.effects["ridges"].on else None
-        nodes, smallest = counted(scene.specimen, size, ridges)
-        nodes = nodes // 2 + 1 if own.effects["symmetry"].on else nodes
+        nodes, smallest = counted(scene.specimen, size, parts.ridges)
+        nodes = nodes // 2 + 1 if parts.half else nodes
         edge, error = coarser * own.contact_edge, coarser * own.estimated_error
         out = replace(
             out,
@@ -586,42 +429,31 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
     elif (external := external_mesh(scene)).element == "quad4":
         element = "Q1P0" if own.element == "Q2P1" else "Q2P1"
         nodes = len(external.elevated(element).points)
-        out = replace(
-            out, element=element, nodes=nodes // 2 + 1 if own.effects["symmetry"].on else nodes
-        )
+        out = replace(out, element=element, nodes=nodes // 2 + 1 if parts.half else nodes)
     return replace(out, predicted_cost_s=_cost(out.nodes, steps, out.effects, RULES))
-
-
-def read_plan(path: str | Path) -> Plan:
-    """The plan written to ``path`` by :meth:`Plan.write`."""
-    return Plan.from_dict(json.loads(Path(path).read_text(encoding="utf-8")))
 
 
 def _decided(case: Case) -> dict[str, Effect]:
     """Every effect as it is decided, or as the scene will have it; in the order of the register."""
-    found: dict[str, Effect] = {}
-    for each in in_order():
-        now = replace(case, decided=dict(found))
-        effect, wanted = each.decide(now), case.scene.effects.get(each.name)
+    decided: dict[str, Effect] = {}
+    for planned in in_order():
+        now = replace(case, decided=dict(decided))
+        effect, wanted = planned.decide(now), case.scene.effects.get(planned.name)
         if wanted is not None and wanted != effect.on:
-            if wanted and not each.possible(now):
+            if wanted and not planned.possible(now):
                 raise PlanError(
-                    f"{case.scene.name}: effects.{each.name}: on, but {effect.why}; allowed: off or auto"
+                    f"{case.scene.name}: effects.{planned.name}: on, but {effect.why}; "
+                    "allowed: off or auto"
                 )
-            effect = Effect(
-                wanted,
-                f"asked for in the scene (the planner: {'on' if effect.on else 'off'}, {effect.why})",
-            )
-        found[each.name] = effect
-    return {name: found[name] for name in EFFECTS}
+            planner = f"the planner: {'on' if effect.on else 'off'}, {effect.why}"
+            effect = Effect(wanted, f"asked for in the scene ({planner})")
+        decided[planned.name] = effect
+    return {name: decided[name] for name in EFFECTS}
 
 
-def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:
-    nodes = nodes * float(
-        np.prod([EFFECTS[name].dearer(rules) for name, effect in effects.items() if effect.on])
-    )
-    if effects["finite_strain"].on:
-        work = rules.seconds_finite * rules.iterations_finite
-    else:
-        work = rules.seconds_small * rules.iterations_small
-    return float(rules.seconds_start + work * nodes * steps)
+def _cost(nodes: int, steps: int, effects: Mapping[str, Effect], rules: Rules) -> float:
+    """Seconds of one core."""
+    work = rules.seconds_small * rules.iterations_small * nodes * steps
+    for name, effect in effects.items():
+        work *= EFFECTS[name].dearer(rules) if effect.on else 1.0
+    return float(rules.seconds_start + work)

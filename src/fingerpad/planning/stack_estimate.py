@@ -36,7 +36,8 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
         if UNNAMED in external.curves:
             free.append(f"{len(external.curves[UNNAMED])} boundary edges in none of these curves")
         lines.append(
-            f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: {', '.join(external.regions)}; "
+            f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: "
+            f"{', '.join(external.regions)}; "
             f"held: {', '.join(external.fixed)}; free: {', '.join([SKIN, *free])}"
         )
         lines.append(_where_met(external))
@@ -57,7 +58,8 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
                 else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
             )
             lines.append(
-                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}"
+                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; "
+                f"free: {SKIN}"
             )
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
 
@@ -67,9 +69,15 @@ def _where_met(external: PadMesh) -> str:
     skin = external.points[external.curves[SKIN][:, :2], 0] * 1e3
     low, high = skin.min() + 0.0, skin.max() + 0.0
     height, _ = meeting_place(external)
-    said = f"the indenter meets the skin at x = 0, y = {height * 1e3:.4g} mm; the skin goes from x = {low:.4g} to {high:.4g} mm"
+    said = (
+        f"the indenter meets the skin at x = 0, y = {height * 1e3:.4g} mm; the skin goes from "
+        f"x = {low:.4g} to {high:.4g} mm"
+    )
     if min(-low, high) < 0.05 * (high - low):
-        said += ", so this is the end of the skin: where friction acts or the body goes on beside it, peak pressure is unbounded"
+        said += (
+            ", so this is the end of the skin: where friction acts or the body goes on beside "
+            "it, peak pressure is unbounded"
+        )
     return said
 
 

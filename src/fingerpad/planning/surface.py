@@ -49,13 +49,15 @@ class Surface:
                 else "less than 0.05 um"
             )
             said = (
-                f"the profile was smoothed at {self.smoothing * 1e6:.3g} um, which moved it by {moved}; "
+                f"the profile was smoothed at {self.smoothing * 1e6:.3g} um, which moved it by "
+                f"{moved}; "
                 f"what is left of its roughness may change the pressure by {percent(self.error)}"
             )
             out.append(said + (_LESS_ROUGH if self.error > _ROUGH else ""))
         if self.end is not None:
             out.append(
-                f"contact is expected to reach the end of the profile's points at x = {self.end * 1e3:.3g} mm"
+                "contact is expected to reach the end of the profile's points at x = "
+                f"{self.end * 1e3:.3g} mm"
             )
         return out
 

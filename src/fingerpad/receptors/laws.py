@@ -1,13 +1,13 @@
 """The thesis's equations from skin to impulses: contact pressure, strain energy from pressure,
 impulse rate (Cysyk 1999).
 
-=========  ==================================================================================================
+=========  =========================================================================================
 Eqs 4-1    pressure of a node under one surface, once it is past its peak
 Eq 4-2     pressure of a node under any surface, while the force rises
 Eq 4-3     pressure of a node under any surface, while the force is held
 Eq 4-4     strain energy under the skin as a weighted sum of the pressure on it
 Eqs 4-5    impulse rate from strain energy and its rate; Eq 5-1 is the same without a constant term
-=========  ==================================================================================================
+=========  =========================================================================================
 
 Pure functions of arrays in SI units. The first three are linear in their constants and are given as
 the terms the constants multiply: ``pressure = terms @ constants``.

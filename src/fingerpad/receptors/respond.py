@@ -19,10 +19,8 @@ AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {
     "rapidly_adapting": ASSUMED_RATE,
 }
 """Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate,
-its constants assumed.
+with assumed constants.
 """
-
-
 NAMES = {
     "SA-I": "slowly_adapting",
     "SA1": "slowly_adapting",
@@ -40,39 +38,52 @@ def respond(
     variation: float = 0.0,
     seed: int | None = None,
 ) -> xr.Dataset:
-    """Impulse rates and impulses of all receptors of a history, predicted from their strain energy
-    density and its rate.
+    """Impulse rates and impulses of all receptors of a history.
 
-    Args:
-        history: as `fingerpad.simulate` or `fingerpad.read_history` returns it. afferents: one or
-        more of :data:`AFFERENTS` or
-        :data:`NAMES`, or laws by a name of one's own.
-        variation: coefficient of variation of the intervals (0: none). seed: of that variability.
+    They are predicted from the strain energy density and its rate.
 
-    Returns:
+    Parameters
+    ----------
+    history
+        As `fingerpad.simulate` or `fingerpad.read_history` returns it.
+    afferents
+        One or more of :data:`AFFERENTS` or :data:`NAMES`, or laws by a name of your own.
+    variation
+        Coefficient of variation of the intervals; 0: none.
+    seed
+        Of that variability.
+
+    Returns
+    -------
+    xarray.Dataset
         ``impulse_rate`` (afferent, response_time, receptor), impulses/s; ``impulses`` (afferent,
         receptor), how many; ``impulse_time`` (afferent, receptor, impulse), s, NaN after the last.
         Rates are differences within a leg, so the time of a kink between legs is there twice, 1e-12
         s apart (see :func:`fingerpad.receptors.laws.rate_by_leg`).
 
-    Raises:
-        TypeError: this is no history. ValueError: nothing in the history takes time, there is no
-        such afferent, or there is variability without a seed.
+    Raises
+    ------
+    TypeError
+        This is no history.
+    ValueError
+        Nothing in the history takes time, there is no such afferent, or there is variability
+        without a seed.
     """
     if not isinstance(history, xr.Dataset):
         raise TypeError(
-            f"a history is what simulate or read_history returns, not {type(history).__name__} {str(history)[:60]!r}"
+            "a history is what simulate or read_history returns, "
+            f"not {type(history).__name__} {str(history)[:60]!r}"
         )
     afferents = [afferents] if isinstance(afferents, str) else afferents
-    laws = (
-        dict(afferents)
-        if isinstance(afferents, Mapping)
-        else {NAMES.get(n, n): _law(NAMES.get(n, n)) for n in afferents}
-    )
+    if isinstance(afferents, Mapping):
+        laws = dict(afferents)
+    else:
+        laws = {name: _law(name) for name in (NAMES.get(n, n) for n in afferents)}
     time, leg = history["time"].values, history["leg"].values
     if not time[-1] - time[0] > NO_TIME:
         raise ValueError(
-            "nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold"
+            "nothing in this history takes time, so it has no rates: "
+            "give a leg a rate, a speed or a hold"
         )
     at, energy, change = rate_by_leg(time, history["strain_energy_density"].values, leg)
     rates = np.array(
@@ -81,43 +92,32 @@ def respond(
             for law in laws.values()
         ]
     )
-    children = iter(np.random.SeedSequence(seed).spawn(rates.shape[0] * rates.shape[2]))
+    places = list(np.ndindex(rates.shape[0], rates.shape[2]))
+    seeds = np.random.SeedSequence(seed).spawn(len(places))
     trains = [
-        [
-            impulses(
-                at, rate, variation, None if seed is None else np.random.default_rng(next(children))
-            )
-            for rate in each.T
-        ]
-        for each in rates
+        impulses(at, rates[kind, :, receptor], variation, None if seed is None else own)
+        for (kind, receptor), own in zip(places, seeds, strict=True)
     ]
-    most = max((len(train) for each in trains for train in each), default=0)
-    times = np.full((*rates.shape[::2], most), np.nan)
-    for place, train in zip(
-        np.ndindex(times.shape[:2]), (train for each in trains for train in each), strict=True
-    ):
+    times = np.full((*rates.shape[::2], max(map(len, trains), default=0)), np.nan)
+    for place, train in zip(places, trains, strict=True):
         times[place][: len(train)] = train
+    counts, each = np.isfinite(times).sum(2), ("afferent", "receptor")
+    about = {
+        "impulse_rate": {"units": "1/s", "long_name": "predicted impulse rate"},
+        "impulses": {"units": "1", "long_name": "predicted number of impulses"},
+        "impulse_time": {"units": "s", "long_name": "times of the predicted impulses"},
+        "response_time": {"units": "s", "long_name": "time"},
+    }
+    data = {
+        "impulse_rate": (("afferent", "response_time", "receptor"), rates),
+        "impulses": (each, counts),
+        "impulse_time": ((*each, "impulse"), times),
+    }
     return xr.Dataset(
-        {
-            "impulse_rate": (
-                ("afferent", "response_time", "receptor"),
-                rates,
-                _named("1/s", "predicted impulse rate"),
-            ),
-            "impulses": (
-                ("afferent", "receptor"),
-                np.isfinite(times).sum(2),
-                _named("1", "predicted number of impulses"),
-            ),
-            "impulse_time": (
-                ("afferent", "receptor", "impulse"),
-                times,
-                _named("s", "times of the predicted impulses"),
-            ),
-        },
+        {name: (*values, about[name]) for name, values in data.items()},
         {
             "afferent": list(laws),
-            "response_time": ("response_time", apart(at), _named("s", "time")),
+            "response_time": ("response_time", apart(at), about["response_time"]),
             **{name: history.coords[name] for name in ("receptor_depth", "receptor_offset")},
         },
         {"laws": "; ".join(f"{name}: {law}" for name, law in laws.items())},
@@ -128,7 +128,3 @@ def _law(name: str) -> ImpulseRate | RapidlyAdapting:
     if name not in AFFERENTS:
         raise ValueError(f"no afferent called {name!r}; known: {', '.join([*AFFERENTS, *NAMES])}")
     return AFFERENTS[name]
-
-
-def _named(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}

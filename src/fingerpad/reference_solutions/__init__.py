@@ -9,7 +9,7 @@ westergaard        sinusoidal surface on a half-plane, partial contact
 cattaneo_mindlin   partial slip of the Hertz line contact, loaded and unloaded
 punch              flat rigid punch with sharp edges
 incline            a body pushed up an inclined plane with friction
-friction_plate     published and recomputed numbers of a plate that lifts off, slips and sticks (SSNV128)
+friction_plate     numbers of a plate that lifts off, slips and sticks (SSNV128)
 layered            thin bonded incompressible layer; stack of bonded layers under a cosine load
 layered_contact    a rigid profile pressed on a stack of layers (numerical, one Fourier kernel)
 lame               thick cylinder under internal and external pressure

@@ -49,9 +49,9 @@ def incompressible_kernel(wavenumber_times_thickness, ratio):
     """Kernel K(kh) of an incompressible layer (mu1, h) bonded to an incompressible half-plane
     (mu2).
 
-    ``ratio`` is mu2/mu1.     Under p cos(kx) without shear the surface sinks by p/(2 mu1 k) K cos(kx). K -> 1
-    for kh -> infinity and mu1/mu2 for kh -> 0. Of the shape of ``wavenumber_times_thickness``; raises
-    ``ValueError`` unless both are positive.
+    ``ratio`` is mu2/mu1. Under p cos(kx) without shear the surface sinks by p/(2 mu1 k) K cos(kx).
+    K -> 1 for kh -> infinity and mu1/mu2 for kh -> 0. Of the shape of
+    ``wavenumber_times_thickness``; raises ``ValueError`` unless both are positive.
     """
     positive(wavenumber_times_thickness=wavenumber_times_thickness, ratio=ratio)
     xi = np.asarray(wavenumber_times_thickness, dtype=float)

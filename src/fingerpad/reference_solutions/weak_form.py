@@ -5,7 +5,8 @@ Find the displacement u of the reference body, with F = I + grad u, I1 = tr C, J
 dimensions (F33 = 1), such that
 
     int P : grad v = external(v) for every v,      P = a P_iso(F) + p cof F + F H
-    P_iso = d psi / dF,  psi = W(J^(-2/3) I1, J^(-4/3) I2)      p = kappa theta,  theta = projection of J - 1 on the modes q
+    P_iso = d psi / dF,  psi = W(J^(-2/3) I1, J^(-4/3) I2)
+    p = kappa theta,  theta = projection of J - 1 on the modes q
 
 The projection (Simo, Taylor and Pister 1985) is element by element, ``sum_b G_ab theta_b = int q_a
 (J - 1)`` with ``G_ab`` = ``int q_a q_b``; a share k (J - 1) of the pressure may be left

@@ -73,7 +73,9 @@ def mesh_for(scene, plan):
     from fingerpad.specimen.build import build_pad_mesh
 
     specimen = scene.specimen
-    ridges = specimen.ridges if plan.effects["ridges"].on else None
     return build_pad_mesh(
-        specimen.outline, plan.mesh_size, ridges, specimen.layers.stratum_corneum is not None
+        specimen.outline,
+        plan.mesh_size,
+        plan.parts(scene).ridges,
+        specimen.layers.stratum_corneum is not None,
     )

@@ -98,7 +98,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     Measures are [quantity, condition, unit, value] each. `file`: where the history is kept.
     """
     from fingerpad.measures.known import known
-    from fingerpad.measures.measure import Together
+    from fingerpad.measures.measure import Runs
     from fingerpad.planning.plan import plan
     from fingerpad.results import states_found, write_history
     from fingerpad.simulation import simulate
@@ -106,7 +106,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     chosen = plan(scene)
     history = simulate(scene, plan=chosen)
     cost = json.loads(history.attrs["cost"])
-    values, runs, measures = [], Together({scene.name: history}), known(keep)
+    values, runs, measures = [], Runs({scene.name: history}), known(keep)
     for name in keep:
         measure = measures[name]
         if measure.where(scene):

@@ -12,22 +12,19 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from cysyk1999.studies.ridges.run import boundary
 from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Discretisation, PressToForce, Receptors, Scene
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 from fingerpad.specimen.pad import all_over
 from fingerpad.specimen.ridges import wave_of
-
-if TYPE_CHECKING:
-    from fingerpad.results import Arrays
 
 SIZES = ((0.15, 0.48), (0.02, 0.48), (0.05, 0.48), (0.3, 0.48), (0.15, 0.3), (0.15, 0.8))
 """Heights and pitches of ridges in mm, the specimen's own first."""
@@ -75,13 +72,13 @@ def ridged(base: Scene, height: float, pitch: float) -> Scene:
     )
 
 
-def pressed(scene: Scene, elements: int) -> Arrays:
+def pressed(scene: Scene, elements: int) -> xr.Dataset:
     """The history of a scene with so many elements from one ridge to the next, under the receptors
     and a pitch beyond.
     """
     chosen, inner = plan(scene), scene.specimen.ridges.inner
     focus = all_over(1.5 * inner.pitch, 3 * wave_of(inner) / elements)
-    return solve(scene, replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus)))
+    return simulate(scene, replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus)))
 
 
 def beside(scene: Scene) -> np.ndarray:

@@ -274,7 +274,7 @@ def of_element(pad: Mapping[str, float], kind: str) -> dict[int, float]:
         if kind == "Q2P1"
         else Teaching(scene, replace(chosen, element=kind), mesh, True)
     )
-    run.solve(None)
+    run.run(None)
     space, u = run.body.space, run.body.u
     gradient = np.eye(2) + np.einsum("eqai,eaj->eqji", space.grad, u[space.cells])
     jacobian = np.linalg.det(gradient)

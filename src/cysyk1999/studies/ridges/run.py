@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from fingerpad.planning.plan import plan
-from fingerpad.results import Arrays
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 from fingerpad.specimen import OutlineCurve, RidgedPad, mesh_for
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def case_scene(base: Scene, case: Case) -> Scene:
     )
 
 
-def run_case(base: Scene, case: Case) -> Arrays:
+def run_case(base: Scene, case: Case) -> xr.Dataset:
     """The history of a case, without labels. Raises what :func:`fingerpad.simulate` does."""
     scene = case_scene(base, case)
     chosen = plan(scene)
@@ -129,7 +129,7 @@ def run_case(base: Scene, case: Case) -> Arrays:
         mesh = ridges_drawn(
             mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0]
         )
-    return solve(scene, chosen, mesh=mesh)
+    return simulate(scene, chosen, mesh=mesh)
 
 
 def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool) -> PadMesh:

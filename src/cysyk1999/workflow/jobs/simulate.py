@@ -10,7 +10,7 @@ from fingerpad import load_scene, plan
 from fingerpad.files import write_atomically, write_text
 from fingerpad.planning.plan import companion
 from fingerpad.results import summary, write_history
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 
 
@@ -38,7 +38,7 @@ def run(job):
             else:
                 write_atomically(file, lambda p, content=content: p.write_bytes(content))
             if how.outputs not in solved:  # what is published is what is solved
-                solved[how.outputs] = solve(scene, how, mesh=mesh)
+                solved[how.outputs] = simulate(scene, how, mesh=mesh)
             made = solved[how.outputs]
             write_text(file.with_name("summary.json"), json.dumps(summary(made), indent=2) + "\n")
             write_history(made, history)

@@ -4,7 +4,7 @@ scene's.
 
 from fingerpad import load_scene, plan
 from fingerpad.results import write_history
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 
 
 def run(job):
@@ -12,4 +12,4 @@ def run(job):
     stroke = load_scene(job.scene[0]).with_accuracy("draft")
     for coefficient, history in zip(job.coefficients, job.histories, strict=True):
         scene = stroke.varied({"friction": float(coefficient)})
-        write_history(solve(scene, plan(scene)), history)
+        write_history(simulate(scene, plan(scene)), history)

@@ -1,17 +1,19 @@
 """The effects that a plan decides on: one file each, with its question, its rules, its decision and
 the scenes that show it.
 
-A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here. Scene language,
-plan, simulation, the study of effects, its tables and its picture read the register.
+A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here; one of your own
+is registered while it is needed (:func:`registered`). Scene language, plan, simulation, the study
+of effects, its tables and its picture read the register and name no effect.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from graphlib import TopologicalSorter
 
-from fingerpad.planning.effect import PlannedEffect
+from fingerpad.planning.effect import Effect, Parts, PlannedEffect
 from fingerpad.planning.effects import finite_strain, friction, ridges, symmetry, viscoelasticity
 from fingerpad.scenes.effects import EFFECTS as NAMES
+from fingerpad.scenes.scene import Scene
 
 EFFECTS: dict[str, PlannedEffect] = {
     each.EFFECT.name: each.EFFECT
@@ -24,6 +26,15 @@ def in_order() -> list[PlannedEffect]:
     """The effects, each after those that its decision asks about."""
     wants = {name: effect.after for name, effect in EFFECTS.items()}
     return [EFFECTS[name] for name in TopologicalSorter(wants).static_order()]
+
+
+def parts_of(scene: Scene, effects: Mapping[str, Effect]) -> Parts:
+    """What the effects that are on make of a simulation of ``scene``."""
+    parts = Parts(scene)
+    for name, effect in effects.items():
+        if effect.on:
+            parts = EFFECTS[name].turn_on(parts)
+    return parts
 
 
 @contextmanager

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fingerpad.laws import departure
-from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
+from fingerpad.planning.effect import Case, Effect, LeftOut, PlannedEffect, Shown, rule
 
 
 @dataclass(frozen=True)
@@ -28,30 +28,20 @@ def small_strain_error(case: Case) -> float:
 
 
 def _laws(case: Case) -> float:
-    return max(
-        departure(layer.law, layer.constants, case.contact.strain) for layer in _layers(case)
-    )
-
-
-def _layers(case: Case) -> list:
-    return [layer.law for layer in case.scene.specimen.materials.values()]
+    """By how much the layers' laws depart from the one that small strain is the limit of."""
+    laws = [layer.law for layer in case.scene.specimen.materials.values()]
+    return max(departure(law.law, law.constants, case.contact.strain) for law in laws)
 
 
 def decide(case: Case) -> Effect:
     """On where small strain would be wrong by more than the accuracy."""
     error = small_strain_error(case)
     source = "from the depth and the layers' laws" if _laws(case) else "from the depth"
-    why = f"small strain would be wrong by up to {error:.1%} ({source}), {case.tolerance:.1%} is allowed"
-    return Effect(error > case.tolerance, why)
-
-
-def beside_mesh(case: Case, mesh_error: float) -> Effect:
-    """On where a tolerance has no room for both the error of small strain and that of the mesh."""
-    error = small_strain_error(case)
-    return Effect(
-        True,
-        f"small strain would be wrong by up to {error:.1%} beside the mesh's {mesh_error:.1%}: too much for both",
+    why = (
+        f"small strain would be wrong by up to {error:.1%} ({source}), {case.tolerance:.1%} is "
+        "allowed"
     )
+    return Effect(error > case.tolerance, why)
 
 
 _RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
@@ -61,7 +51,15 @@ EFFECT = PlannedEffect(
     name="finite_strain",
     question="are displacements and strains large?",
     decide=decide,
+    turn_on=lambda parts: replace(parts, large_strain=True),
+    left_out=lambda case: LeftOut(small_strain_error(case)),
+    instead="small strain",
     rules=FiniteStrainRules,
+    dearer=lambda rules: (
+        rules.seconds_finite
+        * rules.iterations_finite
+        / (rules.seconds_small * rules.iterations_small)
+    ),
     shown=(
         Shown(
             "20 gf, 1260 1/m",

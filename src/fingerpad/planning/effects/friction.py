@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fingerpad.planning.effect import OWN_PAIR, Case, Effect, PlannedEffect, Shown, rule
 
@@ -30,7 +30,10 @@ def decide(case: Case) -> Effect:
     if any(leg.strokes for leg in case.scene.motion):
         return Effect(True, f"the skin is stroked with a coefficient of {coefficient:g}")
     worth = min(rules.pressing_friction * coefficient, rules.most_pressing_friction)
-    number = f"in a press a coefficient of {coefficient:g} changes up to {worth:.1%}, {case.tolerance:.1%} is allowed"
+    number = (
+        f"in a press a coefficient of {coefficient:g} changes up to {worth:.1%}, "
+        f"{case.tolerance:.1%} is allowed"
+    )
     return Effect(worth > case.tolerance, f"nothing slides; {number}")
 
 
@@ -42,6 +45,7 @@ EFFECT = PlannedEffect(
     name="friction",
     question="does the skin stick to the stimulus?",
     decide=decide,
+    turn_on=lambda parts: replace(parts, friction=parts.scene.friction),
     possible=lambda case: case.scene.friction != 0,
     rules=FrictionRules,
     dearer=lambda rules: rules.frictional,

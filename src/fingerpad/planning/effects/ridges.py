@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
-
-if TYPE_CHECKING:
-    from fingerpad.scenes.scene import Scene
-    from fingerpad.specimen.pad import MeshSize
-
+from fingerpad.planning.bounds import PlanError, check_size, micrometres
+from fingerpad.planning.effect import Case, Effect, Meshed, PlannedEffect, Shown, rule
+from fingerpad.scenes.scene import Scene
+from fingerpad.scenes.specimen import Ridges
+from fingerpad.specimen.layered import apex_column, ridge_resolution, skin_edge
+from fingerpad.specimen.pad import MeshSize, all_over
+from fingerpad.specimen.ridges import wave_of
 
 _ROUND_OFF = 1e-12
 
@@ -26,7 +27,8 @@ class RidgeRules:
     )
     ridge_width: float = rule(
         1 / 3,
-        "half width of the contact, over the pitch, below which ridges change the more the narrower it is",
+        "half width of the contact, over the pitch, below which ridges change the more the "
+        "narrower it is",
     )
     ridge_contrast: float = rule(
         11.0,
@@ -35,18 +37,21 @@ class RidgeRules:
     )
     ridge_error: float = rule(
         7.0,
-        "error of strain energies beside ridges: this times height / pitch, times (element / pitch) to a power",
+        "error of strain energies beside ridges: this times height / pitch, times (element / "
+        "pitch) to a power",
         "figures/tables/accuracy_ridges.csv",
     )
     ridge_order: float = rule(1.5, "that power", "figures/tables/accuracy_ridges.csv")
     ridge_stroked: float = rule(
         0.5,
-        "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose rates follow from them",
+        "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose "
+        "rates follow from them",
         "figures/studies/accuracy_shown.csv",
     )
     ridge_near: float = rule(
         2.0,
-        "receptors are beside ridges within so many heights of the depth at which the epidermis ends",
+        "receptors are beside ridges within so many heights of the depth at which the epidermis "
+        "ends",
         "figures/tables/accuracy_ridges.csv",
     )
 
@@ -60,9 +65,15 @@ def decide(case: Case) -> Effect:
     if ridges is None:
         return Effect(False, "the specimen has none")
     inner, outer = ridges.inner, ridges.outer
-    why = f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, {inner.height * 1e3:.3g} mm high"
+    why = (
+        f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, "
+        f"{inner.height * 1e3:.3g} mm high"
+    )
     if outer is not None:
-        why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
+        why += (
+            f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, "
+            f"{outer.height * 1e3:.3g} mm high"
+        )
     known = (
         outer is None
         and not case.moves
@@ -90,55 +101,54 @@ def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
     """Relative error of strain energies beside inner ridges, with so many elements from one ridge
     to the next.
     """
-    from fingerpad.specimen.ridges import wave_of
-
     return rules.ridge_error * inner.height / wave_of(inner) * elements**-rules.ridge_order
 
 
-def meshed(
-    scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules
-) -> tuple[MeshSize, float]:
-    """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and
-    the error that is left there.
+def mesh(case: Case, size: MeshSize, edge: float) -> Meshed:
+    """The mesh, finer among ridges that receptors are beside, as the tolerance asks for."""
+    specimen = case.scene.specimen
+    size, error = _finer(case, size)
+    check_size(case.scene, size, case.rules)
+    _check_ridges(specimen.ridges, case.rules.most_nodes)
+    layered = (specimen.outline, size, specimen.ridges)
+    per_ridge, per_height = ridge_resolution(*layered, specimen.layers.stratum_corneum is not None)
+    middle = wave_of(specimen.ridges.inner) / (apex_column(*layered) / 3)
+    said = (
+        f"{per_ridge:.1f} elements from ridge to ridge, {middle:.1f} in the middle, "
+        f"{per_height} rows within their height of the interface"
+    )
+    return Meshed(size, skin_edge(*layered, edge), error, said)
 
-    Args:
-        tolerance: relative; None: edges are given by hand. moves: does the pad move along the
-        surface?
-    """
-    from fingerpad.specimen.layered import apex_column
-    from fingerpad.specimen.pad import all_over
-    from fingerpad.specimen.ridges import wave_of
 
+def _finer(case: Case, size: MeshSize) -> tuple[MeshSize, float]:
+    """The mesh with the edges that receptors beside ridges need, and the error that is left."""
+    scene, rules = case.scene, case.rules
     if not _felt(scene, rules):
         return size, 0.0
     ridges = scene.specimen.ridges
     wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
-    allowed = np.inf if tolerance is None else tolerance * (rules.ridge_stroked if moves else 1.0)
-    wanted = (
-        3
-        * wave
-        * (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order)
-        * (1 - _ROUND_OFF)
-    )
-    if (wanted := max(wanted, rules.least_edge)) < column:
+    by_hand = getattr(scene.accuracy, "skin_edge", None) is not None
+    share = rules.ridge_stroked if case.moves else 1.0
+    allowed = np.inf if by_hand else case.tolerance * share
+    needed = (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order)
+    wanted = max(3 * wave * needed * (1 - _ROUND_OFF), rules.least_edge)
+    if wanted < column:
         reach = max(map(abs, scene.outputs.receptors.offsets), default=0.0) + ridges.inner.pitch
         size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
     return size, error_beside(ridges.inner, wave / (column / 3), rules)
 
 
-def resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
-    """The effect with how finely ridges are meshed, and the skin's edge (m) under the apex;
-    ``edge`` without ridges.
-    """
-    from fingerpad.specimen.layered import apex_column, ridge_resolution, skin_edge
-    from fingerpad.specimen.ridges import wave_of
-
-    per_ridge, per_height = ridge_resolution(*layered)
-    middle = wave_of(layered[2].inner) / (apex_column(*layered[:3]) / 3)
-    said = f"{per_ridge:.1f} elements from ridge to ridge, {middle:.1f} in the middle, {per_height} rows within their height"
-    return replace(effect, why=f"{effect.why}: {said} of the interface"), skin_edge(
-        *layered[:3], edge
-    )
+def _check_ridges(ridges: Ridges, most_nodes: float) -> None:
+    """Refuses ridges so narrow that they need more nodes than are allowed."""
+    wave = wave_of(ridges.inner)
+    nodes = 8 * 20 * 8 * (ridges.half_width + ridges.inner.pitch) / wave
+    if nodes > most_nodes:
+        least = micrometres(wave * nodes / most_nodes)
+        raise PlanError(
+            f"specimen.ridges.inner.pitch: {ridges.half_width / wave:.2g} ridges to either side "
+            f"make {nodes:.2g} nodes; allowed: {most_nodes:g} nodes, a pitch of about "
+            f"{least} um"
+        )
 
 
 _PRESS = {
@@ -150,6 +160,8 @@ EFFECT = PlannedEffect(
     name="ridges",
     question="do ridges change the answers?",
     decide=decide,
+    turn_on=lambda parts: replace(parts, ridges=parts.scene.specimen.ridges),
+    mesh=mesh,
     possible=lambda case: case.scene.specimen.ridges is not None,
     rules=RidgeRules,
     always="ridges: in strokes, outer ones, and near receptors whenever the specimen has them",

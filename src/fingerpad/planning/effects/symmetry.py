@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown
+from fingerpad.specimen.ridges import RidgedPad
 
 
 def decide(case: Case) -> Effect:
@@ -14,8 +17,6 @@ def decide(case: Case) -> Effect:
     if case.external is not None and not case.external.symmetric:
         return Effect(False, "the external mesh is not its own mirror image in x = 0")
     if case.decided["ridges"].on:
-        from fingerpad.specimen.ridges import RidgedPad
-
         if not RidgedPad(case.scene.specimen.outline, case.scene.specimen.ridges).symmetric:
             return Effect(False, "the ridges are not their own mirror image in x = 0")
     return Effect(
@@ -35,6 +36,7 @@ EFFECT = PlannedEffect(
     name="symmetry",
     question="is half the pad enough?",
     decide=decide,
+    turn_on=lambda parts: replace(parts, half=True),
     possible=lambda case: False,  # where the planner has not found it, it is not there
     after=("ridges",),
     always="half the pad: whenever pad, stimulus and motion are mirror images",

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
+from fingerpad.planning.effect import Case, Effect, LeftOut, PlannedEffect, Shown, rule
 from fingerpad.planning.schedule import leg_durations
 from fingerpad.specimen.materials import Prony
 
@@ -23,19 +23,15 @@ class ViscoelasticityRules:
     )
 
 
-def moduli_state(case: Case) -> str:
-    """Moduli with which the scene is solved without time: "instantaneous" if it is over before
-    anything relaxes.
-    """
-    return _decide(case)[1]
-
-
 def decide(case: Case) -> Effect:
     """On unless nothing relaxes in the time the motion takes, or all does."""
     return _decide(case)[0]
 
 
 def _decide(case: Case) -> tuple[Effect, str]:
+    """The decision, and the moduli to solve with where time is left out: the instantaneous ones if
+    the motion is over before anything relaxes.
+    """
     scene, rules, tolerance = case.scene, case.rules, case.tolerance
     prony = Prony(
         tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony)
@@ -53,7 +49,10 @@ def _decide(case: Case) -> tuple[Effect, str]:
     timed = [d for d in durations if d is not None]
     limit, relaxed = rules.relaxation_share * tolerance, 1 - float(prony.relaxation(sum(timed)))
     if None not in durations and relaxed < limit:
-        why = f"the motion is over before {relaxed:.2%} of the stress can relax ({limit:.2%} allowed): instantaneous moduli"
+        why = (
+            f"the motion is over before {relaxed:.2%} of the stress can relax ({limit:.2%} "
+            "allowed): instantaneous moduli"
+        )
         return Effect(False, why), "instantaneous"
     loading = []
     for duration, leg in zip(durations, scene.motion, strict=True):
@@ -69,7 +68,10 @@ def _decide(case: Case) -> tuple[Effect, str]:
     limit = rules.lag_share * tolerance
     lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in loading), default=0.0)
     if lag < limit:
-        why = f"so slow that viscosity adds at most {lag:.2%} to the stress ({limit:.2%} allowed): long-term moduli"
+        why = (
+            f"so slow that viscosity adds at most {lag:.2%} to the stress ({limit:.2%} "
+            "allowed): long-term moduli"
+        )
         return Effect(False, why), "long_term"
     why = f"{relaxed:.0%} of the shear stress can relax within the {sum(timed):.3g} s of the motion"
     return Effect(True, why), "long_term"
@@ -85,6 +87,8 @@ EFFECT = PlannedEffect(
     name="viscoelasticity",
     question="does stress relax while the motion lasts?",
     decide=decide,
+    turn_on=lambda parts: replace(parts, relaxes=True),
+    left_out=lambda case: LeftOut(moduli=_decide(case)[1]),
     possible=lambda case: bool(case.scene.specimen.prony),
     rules=ViscoelasticityRules,
     shown=(
