@@ -97,13 +97,6 @@ ELEMENTS = {
 EDGE_POINTS, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
-def edge_shape(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on
-    [-1, 1].
-    """
-    return edge_values(order, EDGE_POINTS)
-
-
 def edge_values(order: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Shape functions and derivatives (n, order + 1) of an edge (start, end[, middle]) at points
     ``s`` (n,) on [-1, 1].

@@ -32,66 +32,41 @@ class SymmetricPattern:
     """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry
     goes.
 
-    Found from pairs of nodes, of which there are a quarter as many as of equations.
+    Parameters
+    ----------
+    cells : (ne, nen) int array
+        Nodes of the elements, whose entries are in the order of components, then nodes.
+    equation : (n, nc) int array
+        Equation number of each component of a node, ascending; -1 where prescribed.
 
-    Args:
-        cells: (ne, nen) nodes of the elements, whose entries are in the order of components, then
-        nodes. equation: (n, nc) equation number of each component of a node, ascending; -1 where
-        prescribed.
+    Attributes
+    ----------
+    indptr, indices : int32 arrays
+        The pattern, of ``size`` equations and ``nonzeros`` entries.
+    scatter : (ne, nd (nd + 1) / 2) int32 array
+        Where the upper triangle of each element's matrix goes; ``nonzeros`` if prescribed.
 
-    Raises:
-        FactorisationError: a free node belongs to no element.
+    Raises
+    ------
+    FactorisationError
+        A free node belongs to no element.
     """
 
     def __init__(self, cells: np.ndarray, equation: np.ndarray):
-        nodes, components = equation.shape
-        free = equation >= 0
-        self.size = int(np.count_nonzero(free))
-        count = free.sum(axis=1)
-        rank = (free.cumsum(axis=1) - 1).astype(np.int32)  # of an equation among those of its node
-        rows, cols = np.triu_indices(cells.shape[1])
-        a, b = cells[:, rows].astype(np.int64), cells[:, cols].astype(np.int64)
-        keys, pair = np.unique(np.minimum(a, b) * nodes + np.maximum(a, b), return_inverse=True)
-        low, high = np.divmod(keys, nodes)
-        # in the rows of a node stand its own equations, then those of its higher neighbours
-        ends = np.concatenate([[0], np.cumsum(count[high])])
-        first, last = (
-            ends[np.searchsorted(low, np.arange(nodes))],
-            ends[np.searchsorted(low, np.arange(nodes), side="right")],
-        )
-        if (last - first < count).any():
-            raise FactorisationError("some nodes belong to no element")
-        lengths = ((last - first)[:, None] - rank)[free]
-        self.indptr = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int32)
-        self.nonzeros = int(self.indptr[-1])
-
-        number = np.zeros((cells.shape[1],) * 2, dtype=np.int64)
-        number[rows, cols] = number[cols, rows] = np.arange(
-            len(rows)
-        )  # of a pair of an element's nodes
-        at = np.concatenate([equation[cells, c] for c in range(components)], axis=1).astype(
-            np.int32
-        )
-        rows, cols = np.triu_indices(at.shape[1])
-        i, j = at[:, rows], at[:, cols]
+        self.size = int(np.count_nonzero(equation >= 0))
+        at = np.concatenate(list(np.moveaxis(equation[cells], -1, 0)), axis=1).astype(np.int32)
+        i, j = (at[:, side] for side in np.triu_indices(at.shape[1]))
         row, col = np.minimum(i, j), np.maximum(i, j)
-        rank = rank[free]
-        # equations of a node's lower neighbours, in its rows
-        before = (ends[:-1] - first[low]).astype(np.int32)[pair.reshape(a.shape)]
-        place = (
-            (self.indptr[:-1] - rank)[row]
-            + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]]
-            + rank[col]
-        )
-        place = np.where(
-            row >= 0, place, np.int32(self.nonzeros)
-        )  # the extra slot swallows prescribed entries
-        self.scatter = np.ascontiguousarray(
-            place
-        )  # an element's entries side by side, as the loops run through them
-        self.indices = np.empty(self.nonzeros + 1, dtype=np.int32)
-        self.indices[self.scatter] = col
-        self.indices = self.indices[:-1].copy()
+        free = row >= 0
+        row, col = row[free], col[free]
+        entries = np.ones(len(row), np.int8), (row, col)
+        pattern = csr_matrix(entries, shape=(self.size, self.size))
+        self.indptr, self.indices, self.nonzeros = pattern.indptr, pattern.indices, pattern.nnz
+        if not np.diff(self.indptr).all():
+            raise FactorisationError("some nodes belong to no element")
+        pattern.data = np.arange(self.nonzeros, dtype=np.int32)
+        self.scatter = np.full(free.shape, self.nonzeros, np.int32)
+        self.scatter[free] = np.asarray(pattern[row, col]).ravel()
 
     def new_data(self) -> np.ndarray:
         """Zeroed coefficient storage (nonzeros + 1,); the last entry is the discard slot."""
@@ -123,6 +98,13 @@ def pardiso_available() -> bool:
 _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fault
 
 
+def _pointer(value: int | np.ndarray):
+    """How a number or an array is given to a library in C."""
+    if isinstance(value, np.ndarray):
+        return ctypes.c_void_p(value.ctypes.data)
+    return ctypes.byref(ctypes.c_int32(value))
+
+
 class PardisoCondensation:
     """Intel MKL PARDISO as LDL^T; ``single``: in single precision, half as much to read and write.
 
@@ -143,63 +125,22 @@ class PardisoCondensation:
         self._perm = np.zeros(pattern.size, dtype=np.int32)
         self._perm[self.condensed] = 1
         self._handle, self._parameters = np.zeros(64, np.int64), np.zeros(64, np.int32)
-        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia;
-        # precision; Schur complement, factors
-        for i, value in {
-            1: 1,
-            2: 2,
-            10: 8,
-            21: 1,
-            24: 1,
-            28: int(single),
-            36: 2 if len(self.condensed) else 0,
-        }.items():
-            self._parameters[i - 1] = value
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; precision; Schur
+        # complement with factors
+        self._parameters[[0, 1, 9, 20, 23]] = 1, 2, 8, 1, 1
+        self._parameters[[27, 35]] = single, 2 * bool(len(self.condensed))
         self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
     def _call(self, phase: int, right: np.ndarray, out: np.ndarray) -> int:
         """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand
         side, without a report.
         """
-        error = ctypes.c_int32(0)
-        numbers = (
-            ctypes.byref(ctypes.c_int32(value))
-            for value in (1, 1, -2, phase, self._pattern.size, 1, 0)
-        )
-        factors, matrix, kind, phase_, size, sides, report = numbers
-        handle, data, ia, ja, perm, parameters, b, x = (
-            ctypes.c_void_p(array.ctypes.data)
-            for array in (
-                self._handle,
-                self._data,
-                self._ia,
-                self._ja,
-                self._perm,
-                self._parameters,
-                right,
-                out,
-            )
-        )
-        self._library.pardiso(
-            handle,
-            factors,
-            matrix,
-            kind,
-            phase_,
-            size,
-            data,
-            ia,
-            ja,
-            perm,
-            sides,
-            parameters,
-            report,
-            b,
-            x,
-            ctypes.byref(error),
-        )
+        error, size = ctypes.c_int32(0), self._pattern.size
+        matrix = size, self._data, self._ia, self._ja, self._perm
+        given = self._handle, 1, 1, -2, phase, *matrix, 1, self._parameters, 0, right, out
+        self._library.pardiso(*map(_pointer, given), ctypes.byref(error))
         if error.value == _NO_MEMORY:
-            raise MemoryError(f"{self._pattern.size} equations are too many for PARDISO")
+            raise MemoryError(f"{size} equations are too many for PARDISO")
         return error.value
 
     def factor(self, data: np.ndarray) -> np.ndarray:

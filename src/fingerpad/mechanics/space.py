@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fingerpad.mechanics.elements import EDGE_WEIGHTS, ELEMENTS, edge_shape
+from fingerpad.mechanics.elements import EDGE_POINTS, EDGE_WEIGHTS, ELEMENTS, edge_values
 from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.specimen.element_kinds import KINDS
 
@@ -175,7 +175,7 @@ def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     nodal load of a uniform pressure of one on the curve as it lies now, so force over it is
     pressure on straight and curved edges alike.
     """
-    values, slopes = edge_shape(edges.shape[1] - 1)
+    values, slopes = edge_values(edges.shape[1] - 1, EDGE_POINTS)
     tangent = np.einsum("qa,mai->mqi", slopes, points[edges])
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
     nodal = np.einsum("q,qa,mqi->mai", EDGE_WEIGHTS, values, normal)
