@@ -5,7 +5,8 @@ No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each
 the gap is linearised where the skin and the profile stood before, the profile's own movement is
 part of the linear solve, and the resulting mixed linear complementarity problem
 
-    S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,      sum(-n_y f) = F or dd given
+    S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,
+    sum(-n_y f) = F or dd given
 
 is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the
 Schur complement less the multipliers times the second derivative of the gap. Under force control

@@ -4,17 +4,17 @@ is paired with.
 Every element is a mixed one. The dilatation ``J - 1`` is projected, element by element, on a small
 pressure space; the number of its modes is all that tells a locking element from a sound one:
 
-=========  ==================  ==========================================  ===================================
-name       displacement        pressure modes                              use
-=========  ==================  ==========================================  ===================================
-``Q2P1``   9-node quad         3 (linear in x, y; discontinuous)           default
-``Q1P0``   4-node quad         1 (mean dilatation)                         external linear quads
-``P2B``    6-node triangle     3                                           external triangles (with a bubble node)
-``Q2``     9-node quad         9 (= pointwise, no projection)              teaching case: oscillates
-``Q1``     4-node quad         4 (= pointwise)                             teaching case: locks
-``Q2R``    9-node quad, 2 x 2  4 (= pointwise at the reduced points)       teaching case: may hourglass
-``P2``     6-node triangle     6 (= pointwise)                             teaching case: oscillates
-=========  ==================  ==========================================  ===================================
+=========  ==================  ==============================  ===================================
+name       displacement        pressure modes                  use
+=========  ==================  ==============================  ===================================
+``Q2P1``   9-node quad         3 (linear, discontinuous)       default
+``Q1P0``   4-node quad         1 (mean dilatation)             external linear quads
+``P2B``    6-node triangle     3                               external triangles (bubble node)
+``Q2``     9-node quad         9 (= pointwise)                 teaching case: oscillates
+``Q1``     4-node quad         4 (= pointwise)                 teaching case: locks
+``Q2R``    9-node quad, 2 x 2  4 (pointwise, reduced points)   teaching case: may hourglass
+``P2``     6-node triangle     6 (= pointwise)                 teaching case: oscillates
+=========  ==================  ==============================  ===================================
 
 Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2
 with linear pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.

@@ -6,7 +6,7 @@ own, in the element's pressure modes, which the projection ``v`` of J - 1 is to 
 and Pister 1985): kappa (d v - d^2/2), the pressure being kappa d. Newton's method, with the tangent
 of a state ``0`` that need not be the present one, is
 
-    (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),      d <- v(u) + B0 du,      B = dv/du,
+    (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),    d <- v(u) + B0 du,    B = dv/du,
 
 so that pressure is found by equilibrium, and never as kappa times a small difference of
 displacements: what ``v`` and ``d`` still differ by after a step is a change of volume too small to

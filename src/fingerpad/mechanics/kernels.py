@@ -7,7 +7,7 @@ operator ``d(cof F) = C0 : dF`` of two dimensions, and the law's ``m, t`` and ``
     P  = m (F - t/(3 J) c) + p c + F H
     dP = (m I + H) dF - (m t/(3 J) - p_lag) C0 : dF
          + f F (F : dF) + g (F (c : dF) + c (F : dF)) + h c (c : dF)                 [isochoric]
-         + kappa sum_a psi_a int psi_a c : dF                                        [dilatation, rank = pressure modes]
+         + kappa sum_a psi_a int psi_a c : dF               [dilatation, rank = pressure modes]
 
 so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it
 is drawn back to the reference cell, whose gradients are the same for all elements, and the loops
