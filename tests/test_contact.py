@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from fingerpad.mechanics.contact import (
     ContactError,
     Flexibility,
+    Rows,
     Zone,
     respond,
     solve_contact,
@@ -49,17 +50,10 @@ def solve(parts, active=None, curvature=None, previous=None, **control):
     zone, schur, right, gap, gradient = parts
     n = len(gap)
     zero = np.zeros(n)
-    return solve_contact(
-        zone,
-        schur,
-        right,
-        gap,
-        gradient,
-        zero if curvature is None else curvature,
-        zero if previous is None else previous,
-        np.zeros(n, bool) if active is None else active,
-        **control,
-    )
+    rows = Rows(zone, slice(None), None, gap, gradient, zero if curvature is None else curvature)
+    previous = zero if previous is None else previous
+    active = np.zeros(n, bool) if active is None else active
+    return solve_contact(rows, schur, right, previous, active, **control)
 
 
 @settings(max_examples=60, deadline=None)

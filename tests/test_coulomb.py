@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad import load_scene, simulate
-from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.friction import Coulomb, tangents
 from fingerpad.results import FRICTION_VARIABLES
 from test_contact import problem
@@ -29,19 +29,10 @@ def solve(
         law.state[:] = state
     zero = np.zeros(n)
     motion = np.zeros((n, 2)) if motion is None else motion
-    return law.solve(
-        zone,
-        slice(0, n),
-        schur,
-        right,
-        gap,
-        gradient,
-        zero if curvature is None else curvature,
-        zero if previous is None else previous,
-        np.zeros(n, bool) if state is None else np.ones(n, bool),
-        motion,
-        **control,
-    )
+    rows = Rows(zone, slice(0, n), None, gap, gradient, zero if curvature is None else curvature)
+    previous = zero if previous is None else previous
+    active = np.full(n, state is not None)
+    return law.solve(rows, schur, right, previous, active, motion, **control)
 
 
 def tilted(parts, seed):
@@ -139,9 +130,8 @@ def test_without_friction_it_is_the_frictionless_problem(seed, control):
     step = solve(parts, 0.0, np.full((COUNT, 2), 0.1), **{control: value})
     zone, schur, right, gap, gradient = parts
     zero = np.zeros(COUNT)
-    plain = solve_contact(
-        zone, schur, right, gap, gradient, zero, zero, np.zeros(COUNT, bool), **{control: value}
-    )
+    rows = Rows(zone, slice(None), None, gap, gradient, zero)
+    plain = solve_contact(rows, schur, right, zero, np.zeros(COUNT, bool), **{control: value})
     np.testing.assert_allclose(step.force, plain.force, atol=1e-9)
     np.testing.assert_allclose(step.condensed_displacement, plain.condensed_displacement, atol=1e-9)
     assert not step.tangential.any() and step.depth_change == pytest.approx(plain.depth_change)

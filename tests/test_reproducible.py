@@ -10,7 +10,7 @@ import pytest
 
 from fingerpad import load_scene, simulate
 from fingerpad.cli import main
-from fingerpad.mechanics import dense, linear_solver
+from fingerpad.mechanics import linear_solver
 from fingerpad.results import write_history
 from wrong_scenes import changed, write
 
@@ -60,8 +60,8 @@ def test_a_history_is_written_as_the_same_bytes(tmp_path):
 @pytest.mark.skipif(not linear_solver.pardiso_available(), reason="PARDISO is not installed here")
 def test_one_and_two_threads_agree(monkeypatch):
     def with_threads(number):
-        monkeypatch.setattr(dense, "threads", lambda: number)
-        dense._loaded.cache_clear()
+        monkeypatch.setattr(linear_solver, "threads", lambda: number)
+        linear_solver._mkl.cache_clear()
         return simulate(load_scene(SCENE))
 
     two, one = with_threads(2), with_threads(1)

@@ -160,9 +160,8 @@ def test_every_side_is_kept(seed, force):
     """
     (zone, schur, right, gap, gradient), _ = in_valleys(seed)
     zero = np.zeros(len(gap))
-    step = solve_contact(
-        zone, schur, right, gap, gradient, zero, zero, zero.astype(bool), force=force
-    )
+    rows = Rows(zone, slice(None), None, gap, gradient, zero)
+    step = solve_contact(rows, schur, right, zero, zero.astype(bool), force=force)
     opening = (
         gap
         + zone.gather(gradient) @ step.condensed_displacement
@@ -183,8 +182,8 @@ def frictional(seed, coefficient, force=2.0):
     zero, law = np.zeros(len(gap)), Coulomb(coefficient, len(gap))
     motion = np.random.default_rng(seed).normal(0, 1e-2, (len(gap), 2))
     motion[12:] = motion[partner[12:]]
-    known = schur, right, gap, gradient, zero, zero, zero.astype(bool), motion
-    step = law.solve(zone, slice(None), *known, partner=partner, force=force)
+    rows = Rows(zone, slice(None), partner, gap, gradient, zero)
+    step = law.solve(rows, schur, right, zero, zero.astype(bool), motion, force=force)
     tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
     du, dd = step.condensed_displacement, step.depth_change
     opening = gap + zone.gather(gradient) @ du + gradient[:, 1] * dd

@@ -6,6 +6,8 @@ import numpy as np
 
 _EDGES = 3
 """Edges of the skin's elements from the contact's edge in, over which pressure is looked at."""
+_HANKEL = np.add.outer(np.arange(3), np.arange(3))
+"""Which power of x is in a row and column of the normal equations of a parabola."""
 
 
 def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -> float:
@@ -24,55 +26,34 @@ def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -
     """
     plain, reach = float(x[-1] + spacing / 2), _EDGES * on_edge * float(spacing)
     known = x > plain - reach - 4 * spacing  # further in there is no weight
-    x, pressure = x[known], pressure[known]
-    edge, along = plain, (x - plain) / reach
-    terms = np.array([np.ones_like(along), along, along * along, along**3, along**4])
-    squares = terms[:3] * pressure**2
+    along, pressure = (x[known] - plain) / reach, pressure[known]
+    powers = along ** np.arange(5)[:, None]
+    squares = powers[:3] * pressure**2
+    edge = plain
     for _ in range(4):
-        weight = (
-            np.minimum(np.maximum(along + (1 + (plain - edge) / reach), 0.0), 1.0) ** 2 * pressure
-        )
-        roots = _roots(*_parabola(terms @ weight, squares @ weight, np.count_nonzero(weight) - 2))
+        inside = np.clip(along + (1 + (plain - edge) / reach), 0.0, 1.0)
+        weight = inside**2 * pressure
+        terms = min(np.count_nonzero(weight) - 1, 3)  # of a parabola, or of a line
+        if terms < 2:
+            return plain
+        normal = (powers @ weight)[_HANKEL[:terms, :terms]]
+        try:
+            roots = _roots(*np.linalg.solve(normal, squares[:terms] @ weight).tolist())
+        except np.linalg.LinAlgError:
+            return plain
         near = [reach * root for root in roots if -4 * spacing < reach * root < 2 * spacing]
         if not near:
             return plain
         edge = plain + min(near, key=abs)
-    return edge
+    return float(edge)
 
 
-def _parabola(moments, values, degree):
-    """Coefficients, highest power first, of a parabola or line by least squares; none where there
-    is none.
-
-    moments: (5,) weighed sums of the powers of x. values: (3,) the same of the first three times y.
-    degree: at most.
-    """
-    if degree < 1:
-        return ()
-    s0, s1, s2, s3, s4 = moments.tolist()
-    y0, y1, y2 = values.tolist()
-    if degree == 1:
-        whole = s0 * s2 - s1 * s1
-        return ((s0 * y1 - s1 * y0) / whole, (s2 * y0 - s1 * y1) / whole) if whole else ()
-    a, b, d = s2 - s1 * s1 / s0, s3 - s2 * s1 / s0, s4 - s2 * s2 / s0
-    if not a or not (last := d - b * b / a):
-        return ()
-    once, twice = y1 - s1 * y0 / s0, y2 - s2 * y0 / s0
-    square = (twice - b * once / a) / last
-    slope = (once - b * square) / a
-    return square, slope, (y0 - s1 * slope - s2 * square) / s0
-
-
-def _roots(*coefficients):
-    """Real roots of a line or a parabola, highest power first; none of nothing."""
-    if not coefficients:
-        return []
-    if len(coefficients) == 2 or not coefficients[0]:
-        slope, height = coefficients[-2:]
-        return [-height / slope] if slope else []
-    a, b, c = coefficients
-    inside = b * b - 4 * a * c
+def _roots(height: float, slope: float, bend: float = 0.0) -> list[float]:
+    """Real roots of ``height + slope x + bend x^2``."""
+    inside = slope * slope - 4 * bend * height
     if inside < 0:
         return []
-    q = -(b + math.copysign(math.sqrt(inside), b)) / 2
-    return [q / a, c / q] if q else [0.0]
+    q = -(slope + math.copysign(math.sqrt(inside), slope)) / 2
+    if not q:
+        return [0.0]
+    return [height / q, q / bend] if bend else [height / q]

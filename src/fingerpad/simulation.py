@@ -15,13 +15,13 @@ import numpy as np
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
+from fingerpad.compiled import compiling
 from fingerpad.dense_output import at_outputs
 from fingerpad.laws import assign
-from fingerpad.machine_code import compiling
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import checkerboard, smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
-from fingerpad.mechanics.space import PlaneStrain, Space
+from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.stepping import (
     FOLDED,
     NewtonSettings,
@@ -74,18 +74,22 @@ _plan = plan
 
 #: Unprojected volumetric stiffness under edge indenters, in shear moduli.
 EDGE_STIFFNESS = 5.0
+#: What to try where a stimulus goes through.
 PASSED = "a finer skin mesh, a wider or blunter stimulus, or a smaller force"
-"""What to try where a stimulus goes through."""
-_UNLOADED = 0.5  # of a force that was reached before
-_WIDTHS = 64  # of the contact, at which its error is looked up
-_NO_CONTACT = 1e-5  # m, half-width that stands for none
-# of the work, noted as missing energy beyond it; of a press at once the work is not known as well
-_UNBALANCED = 0.03
-_SQUEEZED = 0.1  # det F, noted below it
-_UNEVEN = 0.15  # of the peak pressure, r.m.s. from node to node, noted beyond it
-_STIFF_IN_BULK = (
-    200.0  # bulk over shear modulus, beyond which single precision does not tell them apart
-)
+#: A leg that ends below this share of a force reached before counts as unloaded.
+UNLOADED_FORCE = 0.5
+#: Number of contact widths at which the error law is looked up.
+ERROR_WIDTHS = 64
+#: m, half-width that stands for no contact.
+NO_CONTACT_WIDTH = 1e-5
+#: Warn above this share of the work that is missing from the energy.
+MAX_ENERGY_WARNING = 0.03
+#: Warn below this det F.
+MIN_DET_F_WARNING = 0.1
+#: Warn above this unevenness of pressure from node to node (r.m.s. over the peak).
+MAX_UNEVEN_WARNING = 0.15
+#: Bulk over shear modulus above which the tangent needs double precision.
+MAX_BULK_SINGLE = 200.0
 
 
 def simulate(
@@ -144,12 +148,11 @@ def simulate(
             runs.append(_outcome(again))
             chosen, history = following, again
     missed = chosen.missed(history.attrs["estimated_error"])
-    tolerance = {
+    history.attrs |= {
         "asked_error": np.nan if chosen.asked_error is None else chosen.asked_error,
         "tolerance": "" if missed is None else f"{missed}; {why_not}".removesuffix("; "),
         "runs": json.dumps(runs),
     }
-    history.attrs |= tolerance
     return history
 
 
@@ -182,13 +185,11 @@ class Simulation:
             for modulus in (self.body.shear, self.body.bulk)
         )
         self.modulus = float((4 * shear * (3 * bulk + shear) / (3 * bulk + 4 * shear)).max())
-        self.fields = (
-            MaterialPoints.centres(self.body, instantaneous if self.prony else None)
-            if fields
-            else None
-        )
-        observers = (self.receptors, self.fields) if fields else (self.receptors,)
-        soft = float((self.body.bulk / self.body.shear).max()) < _STIFF_IN_BULK
+        self.fields, observers = None, [self.receptors]
+        if fields:
+            self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None)
+            observers.append(self.fields)
+        soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
         tolerance = {"force_tolerance": plan.newton_tolerance} if plan.newton_tolerance else {}
         settings = NewtonSettings(single=soft, **tolerance)
         self.stepper = QuasiStatic(
@@ -203,14 +204,7 @@ class Simulation:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
-        space = Space(
-            mesh.points,
-            mesh.cells,
-            mesh.element,
-            fixed,
-            plan.element,
-            PlaneStrain(specimen.contact_length),
-        )
+        space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element)
         layers = [specimen.material(name) for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers],
@@ -223,9 +217,8 @@ class Simulation:
         laws = assign([(layer.law.law, layer.law.constants) for layer in layers], mesh.region)
         args = (space, shear[mesh.region], known.bulk[mesh.region], prony)
         if self.parts.large_strain:
-            body = FiniteStrainBody(
-                *args, pointwise=EDGE_STIFFNESS if self.profile.singular else None, laws=laws
-            )
+            pointwise = EDGE_STIFFNESS if self.profile.singular else None
+            body = FiniteStrainBody(*args, pointwise=pointwise, laws=laws)
         else:
             body = SmallStrainBody(*args, laws=laws)
         return body, known.shear_instantaneous[mesh.region]
@@ -273,9 +266,8 @@ class Simulation:
         fixed curve.
         """
         mesh = self.mesh
-        held = np.intersect1d(
-            self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed])
-        )
+        fixed = np.concatenate([mesh.curves[name].ravel() for name in mesh.fixed])
+        held = np.intersect1d(self.skin.nodes, fixed)
         if not len(held):
             return
         depth = max(leg.depth or 0.0 for leg in self.scene.motion)
@@ -283,8 +275,8 @@ class Simulation:
         if room.min() <= 1e-9 * np.ptp(mesh.points[:, 0]):
             x = 1e3 * mesh.points[held[np.argmin(room)], 0]
             raise PlanError(
-                f"stimulus: comes down on the end of the skin at x = {x:.3g} mm, which is held; allowed: a narrower or more "
-                "curved one, less depth, or a pad that is free there"
+                f"stimulus: comes down on the end of the skin at x = {x:.3g} mm, which is held; "
+                "allowed: a narrower or more curved one, less depth, or a pad that is free there"
             )
 
     def run(self, progress) -> xr.Dataset:
@@ -296,6 +288,7 @@ class Simulation:
         wanted = sorted(self.scene.outputs.snapshots)
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
+        between = self.plan.between and Between(*self.plan.between)
 
         height = float(np.ptp(self.mesh.points[:, 1]))
 
@@ -317,31 +310,20 @@ class Simulation:
             if progress:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
-                width = (
-                    1e3 * np.ptp(self._edges(record)) / self.share
-                    if record.nodal_force.any()
-                    else 0.0
-                )
-                progress(
-                    {"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)}
-                    | counts
-                )
+                width = 1e3 * self._width(record)
+                times = {"time_s": record.time, "end_time_s": total}
+                progress(times | {"contact_width_mm": width} | counts)
 
         try:
-            records = self.stepper.run(
-                self.steps(), after, self.plan.between and Between(*self.plan.between)
-            )
+            records = self.stepper.run(self.steps(), after, between)
         except (NonConvergence, KeyboardInterrupt) as stop:
-            stop.dataset = (
-                self._history(done, states[: len(done) + 1], snapshots, complete=False)
-                if done
-                else None
-            )
-            stop.hard = hard_in(self.scene)
+            stop.dataset, stop.hard = None, hard_in(self.scene)
+            if done:
+                stop.dataset = self._history(done, states[: len(done) + 1], snapshots, False)
             raise
         if self.fields is not None and not snapshots and not wanted:
             snapshots[records[-1].leg, records[-1].time] = self._full_field(records[-1])
-        return self._history(records, states, snapshots, complete=True)
+        return self._history(records, states, snapshots, True)
 
     def _sampled(self, before: float) -> dict[str, np.ndarray]:
         """What the receptors feel now; an element that folds where one lies, between its quadrature
@@ -352,11 +334,8 @@ class Simulation:
         for name, values in sampled.items():
             if not np.isfinite(values).all():
                 depth = 1e6 * self.depth[int(np.flatnonzero(~np.isfinite(values))[0])]
-                raise NonConvergence(
-                    before,
-                    f"an element turns inside out at the receptor {depth:.4g} um deep ({name})",
-                    FOLDED,
-                )
+                where = f"the receptor {depth:.4g} um deep ({name})"
+                raise NonConvergence(before, f"an element turns inside out at {where}", FOLDED)
         return sampled
 
     def _present(self):
@@ -368,10 +347,8 @@ class Simulation:
             yield step if step.force is None else replace(step, force=step.force * self.share)
 
     def _nominal_end(self):
-        last = 0.0
-        for step in schedule(self.scene, *self.plan.stepping):
-            last = step.time
-        return last or 1.0
+        *_, last = schedule(self.scene, *self.plan.stepping)
+        return last.time or 1.0
 
     def _errors(self, records, width) -> dict[str, Any]:
         """The plan's error law at the contact that was found: of legs' ends, the worst of these,
@@ -384,76 +361,48 @@ class Simulation:
         left.
         """
         width, force = np.asarray(width[1:]), np.array([record.force for record in records])
-        touching = np.array(
-            [np.count_nonzero(record.nodal_force) / self.share for record in records]
-        )
-        ends = _leg_ends(records)
-        lost = self._lost_work(records)
-        stroke = (
-            stroke_of(self.scene, self.profile.uneven)
-            if any(record.distance for record in records)
-            else None
-        )
-        own = {
-            k: max(self._error_at(width[k], stroke), lost, 0.5 if touching[k] < 4 else 0.0)
-            for k in ends
-        }
-        legs = []
+        ends, lost = _leg_ends(records), self._lost_work(records)
+        strokes = any(record.distance for record in records)
+        stroke = stroke_of(self.scene, self.profile.uneven) if strokes else None
+        legs, judged = [], []
         for k in ends:
+            few = np.count_nonzero(records[k].nodal_force) / self.share < 4
+            error = max(self._error_at(width[k], stroke), lost, 0.5 if few else 0.0)
             largest = int(np.argmax(force[: k + 1]))
-            unloaded = force[k] < _UNLOADED * force[largest] and width[k] < width[largest]
-            legs.append(own[k] * width[k] / width[largest] if unloaded else own[k])
-        widths = np.unique(
-            width[width > 0]
-        )  # the law is smooth: some of a thousand tell the largest error of all
-        some = widths[
-            np.unique(np.linspace(0, len(widths) - 1, min(len(widths), _WIDTHS)).astype(int))
-        ]
-        beside = [self._error_at(each, stroke) * each / width.max() for each in some]
-        judged = [k for k, error in zip(ends, legs, strict=True) if error == own[k]]
-        narrowest = min((width[k] for k in judged), default=0.0)
+            if force[k] < UNLOADED_FORCE * force[largest] and width[k] < width[largest]:
+                error *= width[k] / width[largest]
+            else:
+                judged.append(width[k])
+            legs.append(float(error))
+        # the law is smooth: some of a thousand widths tell the largest error of all
+        widths = np.unique(width[width > 0])
+        some = np.linspace(0, len(widths) - 1, min(len(widths), ERROR_WIDTHS)).astype(int)
+        beside = [self._error_at(w, stroke) * w / width.max() for w in widths[np.unique(some)]]
         return {
-            "estimated_error": float(max(legs)),
-            "estimated_error_of_legs": json.dumps([float(error) for error in legs]),
+            "estimated_error": max(legs),
+            "estimated_error_of_legs": json.dumps(legs),
             "largest_error": float(max([*legs, *beside])),
-            "narrowest_half_width": max(narrowest / 2, 1e-9),
+            "narrowest_half_width": max(min(judged, default=0.0) / 2, 1e-9),
         }
 
     def _error_at(self, width, stroke) -> float:
         """The error law for a contact of ``width`` m, on a stroke if there is one."""
-        plan = self.plan
-        half_width = min(width / 2, plan.contact.narrowest or np.inf)
-        around = plan.mesh_size and plan.mesh_size.skin_edge
+        plan, bumpy = self.plan, self.scene.stimulus.irregular
+        half_width = min(width / 2, plan.contact.narrowest or np.inf) or NO_CONTACT_WIDTH
         steps = plan.states_per_leg if plan.timed or plan.strokes else None
-        edge, half_width, bumpy = (
-            plan.contact_edge,
-            half_width or _NO_CONTACT,
-            self.scene.stimulus.irregular,
-        )
         if plan.mesh_size is None:
-            own = own_errors(
-                plan.element,
-                edge,
-                half_width,
-                plan.receptor_height,
-                steps,
-                stroke,
-                rules=RULES,
-                bumpy=bumpy,
-            )
-            found = max(own.values())
+            known = plan.element, plan.contact_edge, half_width, plan.receptor_height, steps, stroke
+            error = max(own_errors(*known, rules=RULES, bumpy=bumpy).values())
         else:
-            found = estimated_error(
-                edge, half_width, steps, stroke, around, rules=RULES, bumpy=bumpy
-            )
-        return max(found, plan.least_error) + plan.small_strain_error + plan.surface.error
+            known = plan.contact_edge, half_width, steps, stroke, plan.mesh_size.skin_edge
+            error = estimated_error(*known, rules=RULES, bumpy=bumpy)
+        return max(error, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _unbounded(self, record: Record) -> Unbounded:
         """Where in the contact of a state pressure has no bound."""
-        on = self.skin.nodes[record.nodal_force > 0]
+        on, x = self._touching(record)
         if not len(on):
             return Unbounded()
-        x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
         x = np.concatenate([x, -x]) if self.mesh.half else x
         near = self.plan.contact_edge
         if self.plan.unresolved_edge:
@@ -464,56 +413,46 @@ class Simulation:
             corners = seen_corners(
                 self.corners[there], self.modulus, pressure, self.skin.spacing, half_width
             )
-        corners = (
-            corners[[np.abs(x - corner).min() <= near for corner in corners]]
-            if len(corners)
-            else corners
-        )
+        if len(corners):
+            corners = corners[[np.abs(x - corner).min() <= near for corner in corners]]
         places = list(in_words(self.profile, corners))
         for node, angle in self.skin_ends:
             if node in on and ends_unbounded(angle, self.stepper.friction is not None):
-                places.append(
-                    f"the end of the skin at x = {self.mesh.points[node, 0] * 1e3:.4g} mm"
-                )
+                end = self.mesh.points[node, 0] * 1e3
+                places.append(f"the end of the skin at x = {end:.4g} mm")
         return Unbounded(tuple(places), bool(np.any(np.abs(corners - record.distance) <= 2 * near)))
 
+    def _touching(self, record):
+        """Nodes of the skin that touch (k,), and where on the profile they are (k,), m."""
+        on = self.skin.nodes[record.nodal_force > 0]
+        return on, self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
+
     def _lost_work(self, records) -> float:
-        missing = [
-            record.work - record.energies[0] - record.energies[2] - record.frictional
-            for record in records
-        ]
-        drift = [
-            abs(now - before)
-            for now, before, record, last in zip(
-                missing[1:], missing, records[1:], records, strict=False
-            )
-            if record.leg == last.leg and self.scene.motion[record.leg].strokes
-        ]
-        return (
-            sum(drift) / max((abs(record.work) for record in records), default=1.0)
-            if drift
-            else 0.0
-        )
+        """Share of the work that has gone missing in strokes."""
+        missing, most = _missing_work(records)
+        strokes = np.array([bool(self.scene.motion[record.leg].strokes) for record in records])
+        same_leg = np.diff([record.leg for record in records]) == 0
+        drift = np.abs(np.diff(missing))[same_leg & strokes[1:]]
+        return sum(drift) / most if len(drift) else 0.0
 
     def _doubts(self, records, pressures) -> Iterator[str]:
         """What should make a person doubt the states that were found."""
-        missing = [
-            record.work - record.energies[0] - record.energies[2] - record.frictional
-            for record in records
-        ]
-        missing = np.abs(missing).max() / max(max(abs(record.work) for record in records), 1e-300)
+        missing, most = _missing_work(records)
+        missing = np.abs(missing).max() / max(most, 1e-300)
         least = min(record.smallest_jacobian for record in records)
-        if self.plan.timed and missing > _UNBALANCED and self.stepper.external is None:
-            yield f"the energy found is off the work that was done by up to {missing:.1%}: more steps or a finer mesh will tell"
-        if least < _SQUEEZED and not self.body.geometrically_linear:
-            yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
-        uneven = max(
-            (board for each in pressures if np.isfinite(board := checkerboard(*each))), default=0.0
-        )
-        if uneven > _UNEVEN and not any(self.unbounded):
-            yield f"pressure goes up and down from node to node, by {uneven:.0%} of its peak (r.m.s.): a finer mesh will tell"
+        if self.plan.timed and missing > MAX_ENERGY_WARNING:
+            off = f"the energy found is off the work that was done by up to {missing:.1%}"
+            yield f"{off}: more steps or a finer mesh will tell"
+        if least < MIN_DET_F_WARNING and not self.body.geometrically_linear:
+            volume = f"an element keeps {least:.1%} of its volume at one point"
+            yield f"{volume}: a finer mesh, or a fillet, will tell"
+        uneven = np.nanmax([0.0, *(checkerboard(*pair) for pair in pressures)])
+        if uneven > MAX_UNEVEN_WARNING and not any(self.unbounded):
+            share = f"{uneven:.0%} of its peak (r.m.s.)"
+            yield f"pressure goes up and down from node to node, by {share}: a finer mesh will tell"
         if self.stepper.wavered:
-            yield "states near to one another may be in equilibrium, and round-off choose between them: smaller steps will tell"
+            near = "states near to one another may be in equilibrium"
+            yield f"{near}, and round-off choose between them: smaller steps will tell"
 
     def _notes(self, records, pressures):
         """What a person should know of the states that were found, and of the contact with a
@@ -529,24 +468,15 @@ class Simulation:
             *self.scene.stimulus.notes,
             *(note for note in self.plan.surface.notes if "expected" not in note),
         ]
+        low, high = self.profile.known
         for record in records:
-            on = self.skin.nodes[record.nodal_force > 0]
-            x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
-            over = np.array(
-                [
-                    self.profile.known[0] - x.min(initial=np.inf),
-                    x.max(initial=-np.inf) - self.profile.known[1],
-                ]
-            )
-            if over.max() > -self.plan.contact_edge:
-                end = self.profile.known[int(over.argmax())]
-                return [
-                    *notes,
-                    f"contact reached the end of the profile's points at x = {end * 1e3:.3g} mm, t = {record.time:.3g} s",
-                ]
+            x = self._touching(record)[1]
+            beyond = {low: low - x.min(initial=np.inf), high: x.max(initial=-np.inf) - high}
+            end = max(beyond, key=beyond.get)
+            if beyond[end] > -self.plan.contact_edge:
+                where = f"x = {end * 1e3:.3g} mm, t = {record.time:.3g} s"
+                return [*notes, f"contact reached the end of the profile's points at {where}"]
         return notes
-
-    # -- back to the whole pad --------------------------------------------------------------------------------------
 
     def _full_field(self, record: Record) -> dict[str, np.ndarray]:
         """What a snapshot holds of the body that is solved, and the outline of the stimulus."""
@@ -573,9 +503,10 @@ class Simulation:
         mean = np.einsum("eq,eqb,eb->e", space.weight, space.psi, modes) / space.weight.sum(1)
         return self.body.bulk * mean
 
-    def _edges(self, record):
-        """Of the contact, gaps within it included; of a half model from the middle on."""
-        return (0.0, record.edges[1]) if self.mesh.half else record.edges
+    def _width(self, record, gaps=0.0) -> float:
+        """Width (m) of the contact of the whole pad, less ``gaps`` (m) of the part solved."""
+        left, right = (0.0, record.edges[1]) if self.mesh.half else record.edges
+        return float(max(np.nan_to_num(right - left - gaps), 0.0) / self.share)
 
     def _gaps(self, record) -> float:
         """Length (m) of skin within the contact that does not touch."""
@@ -586,104 +517,68 @@ class Simulation:
         length = np.where(record.nodal_force[inside] > 0, 0.0, record.length[inside])
         return float(length.sum())
 
+    def _row(self, record: Record, unfold: _Unfolding, apex: int) -> dict[str, Any]:
+        """What a history holds of one state, for the whole pad."""
+        length, share, half = record.length, self.share, self.mesh.half
+        smooth = smoothed_pressure(record.nodal_force, length, half)
+        u = record.displacement[self.skin.nodes]
+        pressure, lateral = unfold.skin(record.nodal_force / length), unfold.skin(u[:, 0], odd=True)
+        row = {
+            "force": record.force / share,
+            "tangential_force": 0.0 if half else record.tangential_force,
+            "indentation_depth": record.depth,
+            "contact_width": self._width(record),
+            "touching_width": self._width(record, self._gaps(record)),
+            "centre_pressure": pressure[apex],
+            "peak_pressure": pressure.max(),
+            "centre_lateral_displacement": lateral[apex],
+            "residual": record.residual,
+            "complementarity_error": record.complementarity,
+            "energy_balance_error": record.energy_error,
+            "external_work": record.work / share,
+            "stored_energy": (record.energies[0] + record.energies[1]) / share,
+            "dissipated_energy": record.dissipated / share,
+            "frictional_dissipation": record.frictional / share,
+            "stroke_distance": record.distance,
+            "leg": np.int32(record.leg),
+            "newton_iterations": np.int32(record.iterations),
+            "cutbacks": np.int32(record.halvings),
+            "min_detF": record.smallest_jacobian,
+            "contact_pressure": pressure,
+            "contact_pressure_smoothed": unfold.skin(smooth),
+            "skin_displacement_x": lateral,
+            "skin_displacement_y": unfold.skin(u[:, 1]),
+        }
+        if record.state is not None:
+            row["tangential_traction"] = unfold.skin(record.tangential / length, odd=True)
+            row["slip"] = unfold.skin(record.slip, odd=True)
+            row["contact_state"] = unfold.skin(record.state)
+        return row
+
     def _history(self, records: list[Record], states, snapshots, complete: bool):
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
-        count = len(records) + 1
         chain = skin_chain(self.whole)
-        out = {
-            name: np.zeros(count)
-            for name in (
-                "force",
-                "tangential_force",
-                "indentation_depth",
-                "contact_width",
-                "touching_width",
-                "centre_pressure",
-                "peak_pressure",
-                "centre_lateral_displacement",
-                "residual",
-                "complementarity_error",
-                "energy_balance_error",
-                "external_work",
-                "stored_energy",
-                "dissipated_energy",
-                "frictional_dissipation",
-                "stroke_distance",
-            )
-        }
-        out |= {
-            name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")
-        }
-        out["min_detF"] = np.ones(count)
-        for name in (
-            "contact_pressure",
-            "contact_pressure_smoothed",
-            "skin_displacement_x",
-            "skin_displacement_y",
-        ):
-            out[name] = np.zeros((count, len(chain)))
-        if self.stepper.friction is not None:
-            out |= {name: np.zeros((count, len(chain))) for name in ("tangential_traction", "slip")}
-            out["contact_state"] = np.zeros((count, len(chain)), np.int8)
-        apex = _apex(self.whole.points[chain])
-        for k, record in enumerate(records, start=1):
-            length = record.length
-            smooth = smoothed_pressure(record.nodal_force, length, self.mesh.half)
-            edges = self._edges(record)
-            u = record.displacement[self.skin.nodes]
-            row = {
-                "force": record.force / self.share,
-                "tangential_force": 0.0 if self.mesh.half else record.tangential_force,
-                "indentation_depth": record.depth,
-                "contact_width": max(np.nan_to_num(edges[1] - edges[0]), 0.0) / self.share,
-                "touching_width": max(np.nan_to_num(edges[1] - edges[0] - self._gaps(record)), 0.0)
-                / self.share,
-                "residual": record.residual,
-                "complementarity_error": record.complementarity,
-                "energy_balance_error": record.energy_error,
-                "external_work": record.work / self.share,
-                "stored_energy": (record.energies[0] + record.energies[1]) / self.share,
-                "dissipated_energy": record.dissipated / self.share,
-                "frictional_dissipation": record.frictional / self.share,
-                "stroke_distance": record.distance,
-                "leg": record.leg,
-                "newton_iterations": record.iterations,
-                "cutbacks": record.halvings,
-                "min_detF": record.smallest_jacobian,
-                "contact_pressure": unfold.skin(record.nodal_force / length),
-                "contact_pressure_smoothed": unfold.skin(smooth),
-                "skin_displacement_x": unfold.skin(u[:, 0], odd=True),
-                "skin_displacement_y": unfold.skin(u[:, 1]),
-            }
-            if record.state is not None:
-                row["tangential_traction"] = unfold.skin(record.tangential / length, odd=True)
-                row |= {
-                    "slip": unfold.skin(record.slip, odd=True),
-                    "contact_state": unfold.skin(record.state),
-                }
-            for name, value in row.items():
-                out[name][k] = value
-            out["peak_pressure"][k] = out["contact_pressure"][k].max()
-            out["centre_pressure"][k] = out["contact_pressure"][k, apex]
-            out["centre_lateral_displacement"][k] = out["skin_displacement_x"][k, apex]
-        for name in states[0]:
-            out[name] = np.array([state[name] for state in states])
+        skin, ends = self.whole.points[chain], _leg_ends(records)
+        apex = _apex(skin)
+        rows = [self._row(record, unfold, apex) for record in records]
+        # before all of them the unloaded pad
+        rows.insert(0, {name: np.zeros_like(value) for name, value in rows[0].items()})
+        out = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        out["min_detF"][0] = 1.0
+        out |= {name: np.array([state[name] for state in states]) for name in states[0]}
         widths = out["contact_width"]
         pressures = [
-            (out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1])
-            for k in _leg_ends(records)
+            (out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1]) for k in ends
         ]
         time_found = np.array([0.0] + [record.time for record in records])
-        out, times = at_outputs(
-            out, time_found, records, self.whole.points[chain, 0], apex, self.mesh.half
-        )
+        out, times = at_outputs(out, time_found, records, skin[:, 0], apex, self.mesh.half)
         coordinates = {
             "time": apart(times),
             "receptor_depth": self.depth,
             "receptor_offset": self.offset,
-            "skin_x": self.whole.points[chain, 0],
-            "skin_y": self.whole.points[chain, 1],
-            "skin_arc": skin_arc(*self.whole.points[chain].T, apex),
+            "skin_x": skin[:, 0],
+            "skin_y": skin[:, 1],
+            "skin_arc": skin_arc(*skin.T, apex),
         }
         self.unbounded = [self._unbounded(record) for record in records]
         worst = max(
@@ -713,9 +608,7 @@ class Simulation:
                 "error_covers": worst.covers + self.plan.strokes * OF_STROKES,
                 "singular": int(bool(worst)),
                 "unbounded_at": worst.text,
-                "unbounded_at_of_legs": json.dumps(
-                    [self.unbounded[k].text for k in _leg_ends(records)]
-                ),
+                "unbounded_at_of_legs": json.dumps([self.unbounded[k].text for k in ends]),
                 "notes": self._notes(records, pressures),
                 "provenance": provenance(),
             },
@@ -724,10 +617,8 @@ class Simulation:
             f"states of a leg that takes no time stand {INSTANT:g} s apart"
         )
         if snapshots:
-            found = {
-                name: [field[name] for field in snapshots.values()]
-                for name in next(iter(snapshots.values()))
-            }
+            first, *_ = fields = list(snapshots.values())
+            found = {name: [field[name] for field in fields] for name in first}
             add_snapshots(
                 history,
                 [history["time"].values[_last(out["leg"], times, *key)] for key in snapshots],
@@ -747,14 +638,10 @@ class Simulation:
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
             history = history.merge(respond(history, wanted))
         if worst:
-            for name in (
-                "peak_pressure",
-                "contact_pressure",
-                *(["centre_pressure"] if worst.centre else []),
-            ):
-                history[name].attrs["comment"] = (
-                    f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
-                )
+            comment = f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
+            names = ["peak_pressure", "contact_pressure"] + ["centre_pressure"] * worst.centre
+            for name in names:
+                history[name].attrs["comment"] = comment
         return history
 
 
@@ -765,11 +652,17 @@ def _last(legs: np.ndarray, times: np.ndarray, leg: int, time: float) -> int:
 
 def _leg_ends(records) -> list[int]:
     """Which of the states found are the last ones of their legs."""
-    return [
-        k
-        for k, record in enumerate(records)
-        if k + 1 == len(records) or records[k + 1].leg != record.leg
+    legs = [record.leg for record in records]
+    return np.flatnonzero(np.diff(legs, append=-1)).tolist()
+
+
+def _missing_work(records) -> tuple[np.ndarray, float]:
+    """Work that is not in the energy of the states (states,), J/m, and the largest work."""
+    missing = [
+        record.work - record.energies[0] - record.energies[2] - record.frictional
+        for record in records
     ]
+    return np.array(missing), max(abs(record.work) for record in records)
 
 
 def _apex(skin: np.ndarray) -> int:
@@ -781,20 +674,13 @@ class _Unfolding:
     """Values of the solved mesh on the whole mesh; the identity when the whole pad was solved."""
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
-        self.left = whole.points[:, 0] < 0 if solved.half else np.zeros(len(whole.points), bool)
-        self._mirrored = (
-            whole.points[whole.cells].mean(1)[:, 0] < 0
-            if solved.half
-            else np.zeros(len(whole.cells), bool)
-        )
-        if not solved.half:
-            self.node = np.arange(len(whole.points))
-            self.element = np.arange(len(whole.cells))
-        else:
+        middle = whole.points[whole.cells].mean(1)
+        self.node, self.element = np.arange(len(whole.points)), np.arange(len(whole.cells))
+        self.left = solved.half & (whole.points[:, 0] < 0)
+        self._mirrored = solved.half & (middle[:, 0] < 0)
+        if solved.half:
             self.node = _mirror_match(solved.points, whole.points)
-            self.element = _mirror_match(
-                solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1)
-            )
+            self.element = _mirror_match(solved.points[solved.cells].mean(1), middle)
         chain = skin_chain(whole)
         position = np.full(len(solved.points), -1)
         position[skin_nodes] = np.arange(len(skin_nodes))

@@ -12,6 +12,7 @@ from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import Space
 from fingerpad.specimen.materials import Prony, moduli
 
+SIDES = ("left", "right", "bottom", "top")
 BODIES = {"small": SmallStrainBody, "finite": FiniteStrainBody}
 
 
@@ -25,6 +26,19 @@ def two_numbers(value, *, truth, within, frozen, tight=1e-6):
     assert abs(value - frozen) <= tight * abs(frozen), (
         f"frozen: {value!r} is not {frozen!r} within {tight:g}"
     )
+
+
+def close(value, truth, what="", **tolerance):
+    """Assert arrays are near the truth, as ``np.testing.assert_allclose`` does."""
+    np.testing.assert_allclose(value, truth, err_msg=f"truth: {what}", **tolerance)
+
+
+def boundary(mesh, *curves):
+    """(n, 2) bool, true at the nodes of some curves."""
+    fixed = np.zeros(mesh.points.shape, bool)
+    for name in curves:
+        fixed[mesh.curves[name]] = True
+    return fixed
 
 
 def lame_constants(youngs_modulus, poisson):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from meshes import graded, nodes_of, rectangle
 from pressing import TIGHT, Pressed, over_skin, skin_of
-from problems import lame_constants, make_body
+from problems import boundary, lame_constants, make_body
 
 from fingerpad.mechanics.stepping import QuasiStatic, Record, Step
 
@@ -131,8 +131,7 @@ def block(
     xs = np.concatenate([0.5 - right[:0:-1] / 2, 0.5 + right / 2])
     ys = 1 - graded(fine / depth, *(rows or columns))[::-1]
     mesh = rectangle(xs, ys, 2 * half_length, depth, origin=(-half_length, -depth))
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     fixed[nodes_of(mesh, "left", "right"), 0] = True
     young = 2 * shear * (1 + poisson)
     return mesh, make_body(mesh, fixed, *lame_constants(young, poisson), element, strain)

@@ -2,7 +2,7 @@
 
 import numpy as np
 from meshes import KIND, graded, nodes_of, rectangle
-from problems import make_body
+from problems import boundary, make_body
 
 from fingerpad.reference_solutions.layered import Layer
 
@@ -47,8 +47,7 @@ def half_strip(
         origin=(0.0, -depth),
         region=lambda centre: np.searchsorted(bounds, 1 - centre[:, 1]),
     )
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     fixed[nodes_of(mesh, "left", "right"), 0] = True
     shear = np.array([layer.shear_modulus for layer in layers])
     poisson = np.array([layer.poisson_ratio for layer in layers])

@@ -5,11 +5,13 @@ from decimal import Decimal, getcontext
 import numpy as np
 import pytest
 from meshes import KIND, mapped, nodes_of, rectangle
+from numba import njit
 from pressing import press
-from problems import lame_constants, make_body, solve
+from problems import SIDES, boundary, close, lame_constants, make_body, solve
 
 from fingerpad.laws import LAWS, NEO_HOOKE, assign
 from fingerpad.laws.law import isochoric
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import smoothed_pressure
@@ -23,12 +25,6 @@ YEOH = LAWS["yeoh"]
 PRONY = Prony((0.055, 0.3691), (3.25, 0.3414))
 
 
-def boundary(mesh, *curves):
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, *(curves or ("left", "right", "bottom", "top")))] = True
-    return fixed
-
-
 # -- patch test ----------------------------------------------------------------------------------------------
 
 
@@ -36,7 +32,7 @@ def check_patch(element, strain, poisson, soft_element=1.0):
     """Affine boundary values give the affine field inside and the uniform stress on the rim."""
     mesh = rectangle(4, 3, 2.0, 1.0, KIND[element], distortion=0.3)
     shear, bulk = lame_constants(3.0, poisson)
-    body = make_body(mesh, boundary(mesh), shear, bulk, element, strain)
+    body = make_body(mesh, boundary(mesh, *SIDES), shear, bulk, element, strain)
     body.shear[5] *= soft_element
     if strain == "small" and soft_element != 1:
         body = type(body)(body.space, body.shear, body.bulk)
@@ -61,9 +57,7 @@ def check_patch(element, strain, poisson, soft_element=1.0):
         load = edge_load_vectors(mesh.points, mesh.curves[name])
         length = np.hypot(load[:, 0], load[:, 1])
         traction[: len(length)] += length[:, None] * (piola @ normal)
-    np.testing.assert_allclose(
-        body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth"
-    )
+    close(body.internal_force(), traction, atol=1e-9 * np.abs(traction).max())
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.4999])
@@ -254,13 +248,7 @@ def check_factor(step=0.0):
 
 
 def compiled_factor(values):
-    from numba import njit
-
-    from fingerpad.mechanics import (
-        kernels,
-    )  # what it says of isochoric is what compiled loops go by
-
-    @njit(**kernels._JIT)
+    @njit(**kernels._JIT | {"cache": False})
     def each(values, out):
         for k in range(len(values)):
             out[k] = isochoric(values[k])
@@ -320,7 +308,7 @@ def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
             body.displace(u)
             forces.append(body.internal_force())
         scale = np.abs(forces[0]).max()
-        np.testing.assert_allclose(forces[1], forces[0], atol=1e-5 * scale, err_msg="truth")
+        close(forces[1], forces[0], atol=1e-5 * scale)
 
     check()
     must_fail(check, poisson=0.449)
@@ -352,16 +340,12 @@ def check_uniform_pressure(element, curved, weight=1.0):
     found = np.zeros(mesh.points.shape)
     np.add.at(found, places.nodes, places.values[:, :, None] * force[:, None])
     load = -1250.0 * edge_load_vectors(mesh.points, edges)
-    np.testing.assert_allclose(
-        found, load, atol=(5e-3 if curved else 1e-12) * np.abs(load).max(), err_msg="truth: load"
-    )
+    close(found, load, "load", atol=(5e-3 if curved else 1e-12) * np.abs(load).max())
     pressure = places.of_nodes(np.hypot(*force.T)) / places.of_nodes(places.lengths(mesh.points))
-    np.testing.assert_allclose(pressure, 1250.0, rtol=1e-12, err_msg="truth: uniform pressure")
+    close(pressure, 1250.0, "uniform pressure", rtol=1e-12)
     ends = mesh.points[chain[-1]] - mesh.points[chain[0]]
     resultant = 1250.0 * np.array([ends[1], -ends[0]])
-    np.testing.assert_allclose(
-        found.sum(0), resultant, atol=1e-12 * np.hypot(*resultant), err_msg="truth: resultant"
-    )
+    close(found.sum(0), resultant, "resultant", atol=1e-12 * np.hypot(*resultant))
 
 
 @pytest.mark.parametrize("curved", [False, True], ids=["straight", "curved"])
@@ -382,7 +366,7 @@ def check_smoothing(mirrored, weights=(1, 2, 3, 2, 1)):
     sums = [np.convolve(v, weights, mode="same") for v in whole]
     expected = (sums[0] / sums[1])[-12:]
     found = smoothed_pressure(force, length, mirrored)
-    np.testing.assert_allclose(found, expected, rtol=1e-12, err_msg="truth: weights 1, 2, 3, 2, 1")
+    close(found, expected, "weights 1, 2, 3, 2, 1", rtol=1e-12)
 
 
 @pytest.mark.parametrize("mirrored", [False, True], ids=["whole", "half"])
@@ -403,10 +387,8 @@ def check_contact_patch(element, strain, depth, poisson=0.0):
     result = press(body, mesh, depth=depth)
     expected = 2e6 * depth / 2.0
     within = 1e-9 if strain == "small" else 2 * depth
-    np.testing.assert_allclose(result.pressure, expected, rtol=within, err_msg="truth: pressure")
-    np.testing.assert_allclose(
-        result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure"
-    )
+    close(result.pressure, expected, "pressure", rtol=within)
+    close(result.pressure, result.pressure[0], "uniform pressure", rtol=1e-7)
     assert abs(result.force - 2.0 * result.pressure[0]) < 1e-7 * result.force, "truth: resultant"
 
 

@@ -11,7 +11,7 @@ import pytest
 from meshes import mapped, nodes_of, rectangle
 from pads import LOAD, THESIS, pad_body, pad_mesh
 from pressing import TIGHT, press, skin_of
-from problems import lame_constants, make_body, two_numbers
+from problems import boundary, close, lame_constants, make_body, two_numbers
 from sliding import block, drag_to, dragged, slide, stroke
 
 from fingerpad.mechanics.space import edge_load_vectors
@@ -181,9 +181,7 @@ def check_full_stick(friction=100.0):
         f"truth: the skin is dragged along, F_t = {forces[-1]!r}"
     )
     assert not any(state.slip.any() for state in states), "truth: nothing slips"
-    np.testing.assert_allclose(
-        np.diff(forces), forces[-1] / 4, rtol=5e-3, err_msg="truth: F_t grows with the distance"
-    )
+    close(np.diff(forces), forces[-1] / 4, "F_t grows with the distance", rtol=5e-3)
     for before, after in zip((pressed, *states), states, strict=False):
         moved = (after.moved - before.moved)[
             after.stick & before.stick & (np.abs(after.x) < 0.8)
@@ -283,8 +281,7 @@ def friction_plate_contact(elements, friction=friction_plate.FRICTION):
         origin=(0.0, -side - cushion),
         region=lambda c: c[:, 1] < 0.2,
     )
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     fixed[nodes_of(mesh, "right"), 0] = True
     shear, bulk = lame_constants(friction_plate.YOUNGS_MODULUS, friction_plate.POISSON_RATIO)
     stiffness = np.array([1, 1e-6, 1])
@@ -350,8 +347,7 @@ def check_incline(nominal, friction=None, slope=0.1):
     mesh = mapped(
         8, 4, lambda s: np.stack([2 * s[:, 0] - 1, s[:, 1] * (1 - slope * (2 * s[:, 0] - 1))], 1)
     )
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     body = make_body(mesh, fixed, *lame_constants(1e6, 0.3))
     line = Sampled(x=[-5.0, 5.0], y=[5 * slope, -5 * slope])
     start, *_, state = stroke(body, mesh, slide(1.0, 0.1, 3), line, friction or None)
@@ -399,12 +395,7 @@ def check_full_slip(profile, strain, friction=PAD_MU):
     state = pad_stroke(slide(LOAD / 2, 3e-3, 6), profile, friction, strain)[-1]
     touching = state.nodal_force > 0
     assert touching.sum() > 5 and not state.stick.any(), "truth: all of it slips"
-    np.testing.assert_allclose(
-        state.drag[touching],
-        PAD_MU * state.nodal_force[touching],
-        rtol=1e-9,
-        err_msg="truth: q = mu p",
-    )
+    close(state.drag[touching], PAD_MU * state.nodal_force[touching], "q = mu p", rtol=1e-9)
     if profile is FLAT:
         two_numbers(state.ratio, truth=PAD_MU, within=1e-6, frozen=PAD_MU, tight=1e-6)
 
@@ -493,22 +484,11 @@ def check_mirror(profile, friction=PAD_MU, share=-1.0, count=6):
     assert one[-1].ratio > 0.2, "truth: it is dragged"
     for a, b in zip(one, other, strict=True):
         top = a.pressure.max()
-        np.testing.assert_allclose(
-            b.record.depth, a.record.depth, rtol=1e-6, err_msg="truth: depth"
-        )
-        np.testing.assert_allclose(
-            b.record.tangential_force,
-            -a.record.tangential_force,
-            atol=1e-6 * LOAD,
-            err_msg="truth: force",
-        )
-        np.testing.assert_allclose(
-            b.pressure[::-1], a.pressure, atol=1e-5 * top, err_msg="truth: pressure"
-        )
-        np.testing.assert_allclose(
-            b.traction[::-1], -a.traction, atol=1e-5 * top, err_msg="truth: traction"
-        )
-        np.testing.assert_allclose(b.x[::-1], -a.x, atol=1e-9, err_msg="truth: the skin's place")
+        close(b.record.depth, a.record.depth, "depth", rtol=1e-6)
+        close(b.record.tangential_force, -a.record.tangential_force, "force", atol=1e-6 * LOAD)
+        close(b.pressure[::-1], a.pressure, "pressure", atol=1e-5 * top)
+        close(b.traction[::-1], -a.traction, "traction", atol=1e-5 * top)
+        close(b.x[::-1], -a.x, "the skin's place", atol=1e-9)
 
 
 @pytest.mark.parametrize("profile", [FLAT, ROUND], ids=["flat", "cylinder"])
@@ -530,22 +510,16 @@ def check_units(length, stress, friction=PAD_MU, load_share=1.0):
     result = pad_stroke(steps, FLAT, friction, mesh=scaled, scale=stress)
     for a, b in zip(reference, result, strict=True):
         expected = a.record.tangential_force * stress * length
-        np.testing.assert_allclose(
-            b.record.tangential_force, expected, atol=1e-7 * b.record.force, err_msg="truth: force"
-        )
-        np.testing.assert_allclose(
-            b.record.depth, a.record.depth * length, rtol=1e-7, err_msg="truth: depth"
-        )
-        np.testing.assert_allclose(
+        close(b.record.tangential_force, expected, "force", atol=1e-7 * b.record.force)
+        close(b.record.depth, a.record.depth * length, "depth", rtol=1e-7)
+        close(
             b.record.frictional,
             a.record.frictional * stress * length**2,
+            "dissipation",
             rtol=1e-6,
             atol=0,
-            err_msg="truth: dissipation",
         )
-        np.testing.assert_allclose(
-            b.x, a.x * length, atol=1e-9 * length, err_msg="truth: the skin's place"
-        )
+        close(b.x, a.x * length, "the skin's place", atol=1e-9 * length)
         np.testing.assert_array_equal(b.stick, a.stick, err_msg="truth: stick")
 
 
@@ -612,9 +586,7 @@ def check_frictionless_slide(friction=0.0):
         )
         error = np.abs(record.displacement - pressed.record.displacement).max()
         assert error < 1e-10, f"truth: the pad moves by {error:.2e} m"
-        np.testing.assert_allclose(
-            record.nodal_force, pressed.record.nodal_force, atol=1e-6 * LOAD, err_msg="truth: force"
-        )
+        close(record.nodal_force, pressed.record.nodal_force, "force", atol=1e-6 * LOAD)
         assert record.work == pytest.approx(pressed.record.work, rel=1e-7), "truth: no work"
         assert record.tangential is record.slip is record.state is None, (
             "truth: nothing of friction is recorded"

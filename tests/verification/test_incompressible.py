@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from meshes import KIND, cook_membrane, nodes_of, quarter_annulus
-from problems import lame_constants, make_body, solve, two_numbers
+from problems import boundary, lame_constants, make_body, solve, two_numbers
 
 from fingerpad.mechanics.space import edge_load_vectors
 from fingerpad.reference_solutions import cook, lame
@@ -84,8 +84,7 @@ def tip_deflection(element, case, count, poisson=None):
     """Vertical displacement at the middle of the right edge and at its upper corner."""
     case = cook.CASES[case]
     mesh = cook_membrane(count, KIND[element])
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "left")] = True
+    fixed = boundary(mesh, "left")
     shear, bulk = lame_constants(case.youngs_modulus, poisson or case.poisson_ratio)
     body = make_body(mesh, fixed, shear, bulk, element)
     load = np.zeros_like(body.u)

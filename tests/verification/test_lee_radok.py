@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from pressing import over_skin, skin_of, walk
-from problems import two_numbers
+from problems import close, two_numbers
 from strips import Layer, half_strip
 
 from fingerpad.mechanics.stepping import Step
@@ -86,7 +86,7 @@ def check_relaxation(count=2, series=ONE_TERM):
         assert truth / load == pytest.approx(published, abs=1e-3)
         two_numbers(force, truth=truth, within=4e-3, frozen=frozen)
     widths = [end.half_width for end in ends]
-    np.testing.assert_allclose(widths, widths[0], rtol=1.2e-2, err_msg="truth: the width is held")
+    close(widths, widths[0], "the width is held", rtol=1.2e-2)
 
 
 RELAXED = (0.019444347, 0.012135999, 0.008082996)

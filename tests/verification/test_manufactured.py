@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from meshes import KIND, nodes_of, rectangle
-from problems import body_load, l2_error, lame_constants, make_body, solve, two_numbers
+from meshes import KIND, rectangle
+from problems import body_load, boundary, l2_error, lame_constants, make_body, solve, two_numbers
 
 from fingerpad.reference_solutions import manufactured
 
@@ -47,8 +47,7 @@ def errors(element, strain, poisson, ran_as=None, force_poisson=None):
     found = []
     for count in (4, 8, 16):
         mesh = rectangle(count, count, kind=KIND[element], distortion=0.15)
-        fixed = np.zeros(mesh.points.shape, bool)
-        fixed[nodes_of(mesh, "left", "right", "top", "bottom")] = True
+        fixed = boundary(mesh, "left", "right", "top", "bottom")
         body = make_body(mesh, fixed, shear, bulk, ran_as or element, strain)
         load = body_load(body.space, lambda x: force(field, x, *loaded))
         solve(body, load, field.displacement(body.space.points))

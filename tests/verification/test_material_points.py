@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from meshes import nodes_of, quarter_annulus, rectangle
+from meshes import quarter_annulus, rectangle
 from pressing import press
-from problems import make_body, two_numbers
+from problems import boundary, close, make_body, two_numbers
 from scipy.linalg import logm
 from skfem import ElementQuad1, ElementQuad2, ElementTriP2, MappingIsoparametric
 from strips import Layer, half_strip
@@ -66,19 +66,10 @@ def check_hertz_energy(element, strain="small", off_axis=0.0):
         two_numbers(found / p0**2, truth=expected / p0**2, within=0.02, frozen=frozen, tight=1e-5)
     # incompressible and in the plane: von Mises stress is sqrt(3) times the largest shear stress
     stresses = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)
-    np.testing.assert_allclose(
-        energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02, err_msg="truth"
-    )
-    np.testing.assert_allclose(
-        energies["compressive_strain"],
-        stresses["max_shear"] / (2 * shear),
-        rtol=0.04,
-        err_msg="truth",
-    )
+    close(energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02)
+    close(energies["compressive_strain"], stresses["max_shear"] / (2 * shear), rtol=0.04)
     for name in ENERGIES:
-        np.testing.assert_allclose(
-            energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth"
-        )
+        close(energies[name], energies["strain_energy_network"], rtol=2e-3)
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
@@ -94,8 +85,7 @@ def test_energy_below_hertz_contact(element, strain, must_fail):
 def check_shear_energies(strain, series=THESIS):
     """The energies at the end of a shear ramp of 0.5 s and after a hold of 2 s."""
     mesh = rectangle(1, 1)
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     long_term, shear = 2.0, 1e-3
     instantaneous = long_term / THESIS.g_infinity
     body = make_body(mesh, fixed, long_term, 50.0, "Q2P1", strain, series)
@@ -127,9 +117,7 @@ def check_shear_energies(strain, series=THESIS):
         truth["von_mises_stress"] = 3**0.5 * abs(total[k])
         found = receptors.sample(body)
         for name in truth:
-            np.testing.assert_allclose(
-                found[name], truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s"
-            )
+            close(found[name], truth[name], f"{name} at {time} s", rtol=1e-5)
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
@@ -148,12 +136,8 @@ def test_logarithmic_strain_is_half_the_logarithm_of_b():
         [turn, turn @ np.diag([1.5, 0.8]), [[1.2, 0.4], [-0.1, 0.9]], np.eye(2) + 1e-9 * turn]
     )
     truth = np.array([np.real(logm(one @ one.T)) / 2 for one in f])
-    np.testing.assert_allclose(
-        truth[1], turn @ np.diag(np.log([1.5, 0.8])) @ turn.T, atol=1e-14, err_msg="truth"
-    )
-    np.testing.assert_allclose(
-        logarithmic_strain(f), truth, atol=1e-15, rtol=1e-12, err_msg="truth"
-    )
+    close(truth[1], turn @ np.diag(np.log([1.5, 0.8])) @ turn.T, atol=1e-14)
+    close(logarithmic_strain(f), truth, atol=1e-15, rtol=1e-12)
 
 
 def test_between_elements_no_side_is_preferred(monkeypatch):
@@ -162,8 +146,7 @@ def test_between_elements_no_side_is_preferred(monkeypatch):
     """
     monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     mesh = rectangle(2, 2)
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     body = make_body(mesh, fixed, 2.0, 50.0, "Q2P1", "finite")
     x, y = mesh.points.T
     body.displace(0.02 * np.column_stack([y * np.maximum(x - 0.5, 0), y * np.sin(4 * x)]))
@@ -184,7 +167,7 @@ def energy_errors(element, divisions, distortion):
     """
     kind = {"Q1P0": "quad4", "Q2P1": "quad9", "P2B": "tri6"}[element]
     mesh = rectangle(divisions, divisions, kind=kind, distortion=distortion)
-    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 5.0, element, "small")
+    body = make_body(mesh, boundary(mesh), 2.0, 5.0, element, "small")
     body.displace(1e-3 * np.sin(body.space.points @ WAVES.T))
     points = np.random.default_rng(5).uniform(0.02, 0.98, (200, 2))
     slope = 1e-3 * np.cos(points @ WAVES.T)[:, :, None] * WAVES
@@ -232,9 +215,7 @@ def test_nothing_is_fitted_across_layers_or_gaps():
     body.displace(1e-3 * np.column_stack([np.where(left, 1, 3) * mesh.points[:, 1], 0 * left]))
     points = np.array([[0.3, 0.49], [0.3, 0.51], [0.469, 0.3], [0.531, 0.3]])
     found = MaterialPoints(body, points, None).sample(body)["strain_energy_network"]
-    np.testing.assert_allclose(
-        found, 0.5 * 1e-6 * np.array([2, 20, 2, 18]), rtol=1e-6, err_msg="truth"
-    )
+    close(found, 0.5 * 1e-6 * np.array([2, 20, 2, 18]), rtol=1e-6)
 
 
 def test_the_half_of_a_symmetric_body_reads_what_the_whole_does():
@@ -244,7 +225,7 @@ def test_the_half_of_a_symmetric_body_reads_what_the_whole_does():
         mesh = rectangle(
             np.linspace(0, 1, 8 * (1 - low) + 1), 8, 1.0 - low, 1.0, origin=(float(low), 0.0)
         )
-        body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, "Q2P1", "finite")
+        body = make_body(mesh, boundary(mesh), 2.0, 50.0, "Q2P1", "finite")
         x, y = mesh.points.T
         body.displace(0.02 * np.column_stack([np.sin(2 * x) * y, np.cos(3 * x) * y * y]))
         points = np.array([[0.0, 0.47], [0.03, 0.61], [0.2, 0.3]])
@@ -256,7 +237,7 @@ def test_the_half_of_a_symmetric_body_reads_what_the_whole_does():
 def test_no_energy_is_negative():
     """Where it hardly rises from nothing a fit to it goes below."""
     mesh = rectangle(8, 8, origin=(-0.5, 0.0))
-    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, "Q2P1", "small")
+    body = make_body(mesh, boundary(mesh), 2.0, 50.0, "Q2P1", "small")
     body.displace(0.01 * np.column_stack([mesh.points[:, 0] ** 3, 0 * mesh.points[:, 0]]))
     found = MaterialPoints(
         body, np.column_stack([np.zeros(9), np.linspace(0.3, 0.7, 9)]), None
@@ -269,7 +250,7 @@ def test_no_energy_is_negative():
 def test_in_a_layer_of_one_row_the_element_has_its_say():
     """There are too few places across it to fit anything."""
     mesh = rectangle(np.linspace(0, 1, 13), 1, 1.0, 0.05)
-    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, "Q2P1", "finite")
+    body = make_body(mesh, boundary(mesh), 2.0, 50.0, "Q2P1", "finite")
     body.displace(0.01 * np.sin(5 * mesh.points))
     assert MaterialPoints(body, np.array([[0.51, 0.02]]), None).recovery is None
 
@@ -301,7 +282,7 @@ def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
         if bent
         else rectangle(9, 8, kind=kind, distortion=0.3)
     )
-    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, element, "finite")
+    body = make_body(mesh, boundary(mesh), 2.0, 50.0, element, "finite")
     random = np.random.default_rng(3)
     host, xi = (
         random.integers(len(mesh.cells), size=2000),
@@ -331,7 +312,7 @@ def test_points_are_found_in_long_elements_beside_many_narrow_ones(kind):
     """
     mesh = rectangle(200, 2, kind=kind)
     mesh.points[:, 1] = np.interp(mesh.points[:, 1], [0, 0.5, 1], [0, 0.1, 1])
-    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, CURVED[kind][0], "finite")
+    body = make_body(mesh, boundary(mesh), 2.0, 50.0, CURVED[kind][0], "finite")
     points = np.array([[0.5025, 0.15], [0.3025, 0.05], [0.5, 0.15], [0.7025, 0.12]])
     found = located(body.space, points)
     values = body.space.element.shape(found.xi)[0]

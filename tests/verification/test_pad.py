@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pads import LOAD, SHAPES, THESIS, pad_body, pad_mesh, press_pad, ramp_and_hold
 from pressing import TIGHT, over_skin, skin_of, walk
-from problems import two_numbers
+from problems import close, two_numbers
 
 from fingerpad.mechanics.stepping import NewtonSettings, QuasiStatic, Step
 from fingerpad.reference_solutions import ting
@@ -127,19 +127,13 @@ def check_half_is_full(shape, strain, layers=None):
     """
     whole, extra = pressed_whole(shape, strain), {} if layers is None else {"layers": layers}
     half = press_pad(pad_body(half_mesh(), strain, **extra), half_mesh(), shape, force=LOAD)
-    np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-8, err_msg="truth: depth")
-    np.testing.assert_allclose(2 * half.force, whole.force, rtol=1e-8, err_msg="truth: force")
-    np.testing.assert_allclose(
-        2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width"
-    )
+    close(half.depth, whole.depth, "depth", rtol=1e-8)
+    close(2 * half.force, whole.force, "force", rtol=1e-8)
+    close(2 * half.half_width, np.ptp(whole.edges), "width", rtol=1e-7)
     right = len(whole.pressure) // 2
     top = whole.pressure.max()
-    np.testing.assert_allclose(
-        half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure"
-    )
-    np.testing.assert_allclose(
-        whole.pressure, whole.pressure[::-1], atol=1e-7 * top, err_msg="truth: mirror"
-    )
+    close(half.pressure, whole.pressure[right:], "pressure", atol=1e-7 * top)
+    close(whole.pressure, whole.pressure[::-1], "mirror", atol=1e-7 * top)
     assert abs(whole.records[-1].tangential_force) < 1e-8 * LOAD, "truth: no tangential force"
 
 
@@ -209,9 +203,7 @@ def check_scaling(mesh, strain, length, stress, load_share=1.0):
     )
     for name, unit in {"depth": length, "half_width": length, "force": stress * length}.items():
         expected = getattr(reference, name) * unit
-        np.testing.assert_allclose(
-            getattr(result, name), expected, rtol=1e-8, err_msg=f"truth: {name}"
-        )
+        close(getattr(result, name), expected, f"{name}", rtol=1e-8)
     np.testing.assert_allclose(
         result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max()
     )
@@ -378,12 +370,8 @@ def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):
     ratio = viscoelastic.force / elastic.force
     assert abs(ratio - modulus) < 2e-3 * modulus, f"truth: {ratio!r} is not {modulus!r}"
     if modulus == 1.0:
-        np.testing.assert_allclose(
-            viscoelastic.depth, elastic.depth, rtol=1e-8, err_msg="truth: depth"
-        )
-        np.testing.assert_allclose(
-            ratio, 1, rtol=1e-6, err_msg="truth: exactly the long-term answer"
-        )
+        close(viscoelastic.depth, elastic.depth, "depth", rtol=1e-8)
+        close(ratio, 1, "exactly the long-term answer", rtol=1e-6)
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])

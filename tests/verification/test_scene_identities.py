@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import yaml
+from problems import close
 
 from fingerpad import load_scene, simulate
 from fingerpad.mechanics.stepping import NewtonSettings
@@ -113,7 +114,7 @@ def check_steady(run, stimulus, legs, factor=1.0):
         "strain_energy_density",
     ):
         first, second = factor * once[name].values[-1], often[name].values[-1]
-        np.testing.assert_allclose(first, second, rtol=1e-4, err_msg=f"truth: {name}")
+        close(first, second, f"{name}", rtol=1e-4)
     assert once.energy_balance_error[1:].max() < 0.1, (
         "truth: work = energy; a straight line from zero is off by 0.19"
     )
@@ -138,7 +139,7 @@ def check_narrow_contact(run, accuracy):
     history = run(stimulus=SHARP, accuracy=accuracy)
     top = int(np.flatnonzero(history.leg == 0)[-1])
     width = float(history.contact_width[top])
-    np.testing.assert_allclose(width, WIDTH, rtol=0.045, err_msg="truth: the width on finer meshes")
+    close(width, WIDTH, "the width on finer meshes", rtol=0.045)
     energy, time = (
         history.strain_energy_density.values[: top + 1, 2],
         history.time.values[: top + 1],

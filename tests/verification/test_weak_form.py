@@ -4,8 +4,8 @@ law and kinematics.
 
 import numpy as np
 import pytest
-from meshes import KIND, mapped, nodes_of
-from problems import BODIES
+from meshes import KIND, mapped
+from problems import BODIES, boundary, close
 
 from fingerpad.laws import LAWS, NEO_HOOKE, assign
 from fingerpad.mechanics.linear_solver import condensation
@@ -46,8 +46,7 @@ def parts(element, strain, law="neo_hooke", prony=None, **more):
     mesh.
     """
     mesh = mapped(2, 2, bent, KIND[element], region=lambda centre: (centre[:, 0] > 0.5).astype(int))
-    fixed = np.zeros(mesh.points.shape, bool)
-    fixed[nodes_of(mesh, "bottom")] = True
+    fixed = boundary(mesh, "bottom")
     space = Space(mesh.points, mesh.cells, mesh.element, fixed, element)
     laws = assign([(NEO_HOOKE, ()), (LAWS[law], SLOPES[law][1])], mesh.region)
     body = BODIES[strain](space, SHEAR[mesh.region], BULK[mesh.region], prony, laws=laws, **more)
@@ -71,10 +70,8 @@ def matrix(body, data):
     return body.space.pattern.matrix(data).toarray()
 
 
-def close(found, truth):
-    np.testing.assert_allclose(
-        found, truth, atol=1e-10 * np.abs(truth).max(), rtol=0, err_msg="truth"
-    )
+def equal(found, truth):
+    close(found, truth, atol=1e-10 * np.abs(truth).max(), rtol=0)
 
 
 def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
@@ -105,12 +102,12 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
     lag = 0.05 * random.normal(size=body.dilatation().shape)
     body.displace(u, lag)
     data, force = body.tangent()
-    close(force, form.force(u, slopes, change * factor, history))
-    close(body.against(body.internal_force()), force)
+    equal(force, form.force(u, slopes, change * factor, history))
+    equal(body.against(body.internal_force()), force)
     at_points = np.einsum("eqa,ea->eq", space.psi, lag)
     stiffness = form.stiffness(u, slopes, at_points, change * factor, history)
     free = ~space.fixed.ravel()
-    close(matrix(body, data), stiffness[np.ix_(free, free)])
+    equal(matrix(body, data), stiffness[np.ix_(free, free)])
 
 
 @pytest.mark.parametrize(
@@ -161,10 +158,10 @@ def check_small(element, law="neo_hooke", prony=None, change=1.0):
     u = displacement(points)
     body.displace(u)
     stiffness = form.linear_stiffness(mu[:, 0], change * factor)
-    close(body.internal_force(), (stiffness @ u.ravel()).reshape(u.shape) + history)
+    equal(body.internal_force(), (stiffness @ u.ravel()).reshape(u.shape) + history)
     body.linearise(condensation(body.space.pattern, np.empty(0, dtype=np.int64)))
     free = ~body.space.fixed.ravel()
-    close(matrix(body, body.stiffness()), stiffness[np.ix_(free, free)])
+    equal(matrix(body, body.stiffness()), stiffness[np.ix_(free, free)])
 
 
 @ELEMENTS

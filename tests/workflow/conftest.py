@@ -24,7 +24,7 @@ TREE = (
     "workflow",
 )
 COMPILED_TOO = shutil.ignore_patterns(
-    "*.egg-info", ".*.loop", "*.pyc.*"
+    "*.egg-info", "*.tmp.*", "*.pyc.*"
 )  # all but what is being written
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")

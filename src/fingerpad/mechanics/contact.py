@@ -5,7 +5,8 @@ No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each
 the gap is linearised where the skin and the profile stood before, the profile's own movement is
 part of the linear solve, and the resulting mixed linear complementarity problem
 
-    S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,      sum(-n_y f) = F or dd given
+    S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,
+    sum(-n_y f) = F or dd given
 
 is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the
 Schur complement less the multipliers times the second derivative of the gap. Under force control
@@ -20,11 +21,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 import numpy as np
+from scipy.linalg import eigvalsh_tridiagonal, ldl
+from scipy.linalg.lapack import dpotrf, dpotri
 
-from fingerpad.mechanics import compiled, dense
+from fingerpad.mechanics import kernels
 
 
 class ContactError(RuntimeError):
@@ -80,7 +82,7 @@ class Zone:
         a matrix: (nd nz, n).
         """
         out = np.empty((len(directions) * len(self), matrix.shape[1]))
-        compiled.at_points(
+        kernels.at_points(
             self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out
         )
         return out
@@ -98,7 +100,7 @@ class Zone:
         ``direction`` (nz, 2).
         """
         out = matrix.copy()
-        compiled.bend(out, self._columns, self._values, direction, weight)
+        kernels.bend(out, self._columns, self._values, direction, weight)
         return out
 
     @property
@@ -183,34 +185,51 @@ class Rows:
 
 @dataclass
 class ContactStep:
-    """Solution of one linearised contact problem."""
+    """Solution of one linearised contact problem.
 
-    condensed_displacement: np.ndarray  # (nc,) m
-    depth_change: float  # m
-    force: np.ndarray  # (nz,) N/m, >= 0, along the gap's gradient
-    active: np.ndarray  # (nz,) bool
-    pivots: int
-    flexible: Flexibility  # that it was found with
-    softened: bool = (
-        False  # part of the gaps' second derivative was left out: the state was not stable with it
-    )
-    stiffness: float | None = (
-        None  # N/m^2, of the force against the depth while the same nodes touch
-    )
+    Attributes
+    ----------
+    condensed_displacement : (nc,) array
+        m.
+    depth_change : float
+        m, of the profile.
+    force : (nr,) array
+        N/m, >= 0, along the gap's gradient.
+    active : (nr,) bool array
+        Which gaps are closed.
+    flexible : Flexibility
+        What it was found with.
+    stiffness : float or None
+        N/m^2, of the force against the depth while the same points touch; None if unknown.
+    softened : bool
+        Part of the gaps' second derivative was left out: the state was not stable with it.
+    tangential, state : (nr,) arrays or None
+        With friction: forces along the tangents, N/m, and states (-1, 0, 1).
+    """
 
-
-Step = TypeVar("Step", bound=ContactStep)
+    condensed_displacement: np.ndarray
+    depth_change: float
+    force: np.ndarray
+    active: np.ndarray
+    flexible: Flexibility
+    stiffness: float | None = None
+    softened: bool = False
+    tangential: np.ndarray | None = None
+    state: np.ndarray | None = None
 
 
 def _inverse(matrix):
     """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is,
     LU otherwise.
     """
-    factor = dense.cholesky(matrix)
-    if factor is None:
+    if not len(matrix):
+        return matrix, True
+    # LAPACK reads columns: its upper triangle is the lower one of our rows
+    factor, failed = dpotrf(np.ascontiguousarray(matrix).T, lower=0)
+    if failed:
         return np.linalg.inv(matrix), False
-    inverse = dense.inverse(factor)
-    compiled.mirror(inverse)
+    inverse = dpotri(factor, lower=0, overwrite_c=1)[0].T
+    kernels.mirror(inverse)
     return inverse, True
 
 
@@ -314,14 +333,14 @@ def respond(
 
 
 def until_stable(
-    attempt: Callable[[Flexibility], Step],
+    attempt: Callable[[Flexibility], ContactStep],
     zone,
     schur,
     gradient,
     curvature,
     previous_force,
     flexible: Flexibility | None,
-) -> Step:
+) -> ContactStep:
     """What ``attempt`` finds with the ``flexible`` of before if there is one, or else with that of
     now; and as long as that has no stable solution, with less and less of what makes it unstable.
     Arguments as in :func:`solve_contact`.
@@ -365,12 +384,9 @@ def _soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, 
 
 
 def solve_contact(
-    zone: Zone,
+    rows: Rows,
     schur: np.ndarray,
     right: np.ndarray,
-    gap: np.ndarray,
-    gradient: np.ndarray,
-    curvature: np.ndarray,
     previous_force: np.ndarray,
     active: np.ndarray,
     *,
@@ -380,35 +396,44 @@ def solve_contact(
 ) -> ContactStep:
     """Solve the linearised unilateral problem exactly.
 
-    Args:
-        schur: (nc, nc) N/m^2. right: (nc,) reduced residual without contact forces, N/m. gap: (nz,)
-        m. gradient: (nz, 2). curvature: (nz,) 1/m, second derivative of the gap along the tangent.
-        previous_force: (nz,) N/m multipliers that weigh it. active: (nz,) bool first guess. Exactly
-        one of force (N/m, the sum of -gradient_y f) and depth_change (m). flexible: of an iteration
-        before, to be used as long as it leads to a solution.
+    Parameters
+    ----------
+    rows : Rows
+        The constraints.
+    schur : (nc, nc) array
+        Schur complement, N/m^2.
+    right : (nc,) array
+        Reduced residual without contact forces, N/m.
+    previous_force : (nr,) array
+        Forces that weigh the gaps' second derivatives, N/m.
+    active : (nr,) bool array
+        First guess of the closed gaps.
+    force, depth_change : float
+        Sum of the vertical forces, N/m, or change of the depth, m: exactly one of them.
+    flexible : Flexibility, optional
+        Of an iteration before, to be used as long as it leads to a solution.
 
-    Raises:
-        ContactError: pivoting does not end, or nothing can carry the force.
+    Raises
+    ------
+    ContactError
+        Pivoting does not end.
     """
 
     def attempt(flexible):
-        answer = respond(zone, flexible, right, [gradient])
-        offset = gap + answer.free
-        if depth_change is not None:
-            dd = depth_change
-            f, on, pivots = _pivot(answer.compliance, offset + answer.lever * dd, active)
-        else:
+        answer = respond(rows.zone, flexible, right, [rows.gradient])
+        offset, load = rows.gap + answer.free, None
+        if depth_change is None:
             load = force - answer.load_shift
-            f, dd, on, pivots = _pivot_with_depth(
-                answer.compliance, offset, answer.lever, answer.corner, load, active
-            )
+        else:
+            offset = offset + answer.lever * depth_change
+        f, found, on = _pivot(answer, offset, load, active)
+        dd = found if depth_change is None else depth_change
         require_stable(flexible, answer.compliance, on)
         yields = pressing_stiffness(answer, answer.compliance[np.ix_(on, on)], np.flatnonzero(on))
-        return ContactStep(
-            answer.displacement(f, dd), dd, f, on, pivots, flexible, stiffness=yields
-        )
+        return ContactStep(answer.displacement(f, dd), dd, f, on, flexible, yields)
 
-    return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
+    geometry = rows.gradient, rows.curvature
+    return until_stable(attempt, rows.zone, schur, *geometry, previous_force, flexible)
 
 
 def pressing_stiffness(
@@ -448,74 +473,57 @@ def stable(matrix, compliance, active):
     eigenvalues as ``matrix``.
     """
     inside = compliance[np.ix_(active, active)]
-    return dense.negative_eigenvalues(matrix) == dense.negative_eigenvalues((inside + inside.T) / 2)
+    return _negative_eigenvalues(matrix) == _negative_eigenvalues((inside + inside.T) / 2)
 
 
-def _pivot(compliance, offset, active):
-    def solve(on):
-        f = np.zeros(len(offset))
-        if on.any():
-            f[on] = np.linalg.solve(compliance[np.ix_(on, on)], -offset[on])
-        return f, 0.0
-
-    f, _, active, pivots = _principal_pivoting(
-        solve, lambda f, _: offset + compliance @ f, offset, active
-    )
-    return f, active, pivots
+def _negative_eigenvalues(matrix: np.ndarray) -> int:
+    """Their number, of a symmetric matrix: that of D in L D L^T, by Sylvester's law of inertia."""
+    if not len(matrix):
+        return 0
+    d = ldl(matrix)[1]
+    return int(np.sum(eigvalsh_tridiagonal(np.diag(d), np.diag(d, 1)) < 0))
 
 
-def _pivot_with_depth(compliance, offset, lever, corner, load, active):
-    if not active.any():
-        active = np.zeros(len(offset), bool)
-        active[np.argmin(offset)] = True
+def _pivot(answer: Response, offset, load: float | None, active):
+    """Forces (nr,), change of the depth and closed gaps (nr,) of the complementarity problem.
 
-    def solve(on):
-        if not on.any():
-            raise ContactError("no node can carry the force")
-        k = np.flatnonzero(on)
-        system = np.zeros((len(k) + 1, len(k) + 1))
-        system[:-1, :-1] = compliance[np.ix_(k, k)]
-        system[:-1, -1] = lever[k]
-        system[-1, :-1] = -lever[k]
-        system[-1, -1] = corner
-        solution = np.linalg.solve(system, np.append(-offset[k], load))
-        f = np.zeros(len(offset))
-        f[k] = solution[:-1]
-        return f, solution[-1]
-
-    return _principal_pivoting(
-        solve, lambda f, dd: offset + compliance @ f + lever * dd, offset, active, keep_one=True
-    )
-
-
-def _principal_pivoting(solve, gap_of, offset, active, keep_one=False):
-    """Exchange all infeasible nodes at once; if that stops helping, one at a time (which always
-    ends).
+    All infeasible points are exchanged at once; if that stops helping, one at a time, which always
+    ends. ``offset``: (nr,) m, gaps without forces. ``load``: N/m, of the depth's own equation; None
+    if the depth is given.
     """
-    active = active.copy()
+    active, compliance, lever = active.copy(), answer.compliance, answer.lever
+    by_force = load is not None
+    if by_force and not active.any():
+        active[np.argmin(offset)] = True
     best, patience = len(active) + 1, 8
     scale = max(np.abs(offset).max(), 1e-12)
-    for pivots in range(1, 40 + 4 * len(active)):
+    for _ in range(40 + 4 * len(active)):
+        on = np.flatnonzero(active)
+        system, right = np.empty((len(on) + by_force,) * 2), -offset[on]
+        system[: len(on), : len(on)] = compliance[np.ix_(on, on)]
+        if by_force:
+            system[:-1, -1], system[-1, :-1] = lever[on], -lever[on]
+            system[-1, -1], right = answer.corner, np.append(right, load)
         try:
-            f, dd = solve(active)
+            solution = np.linalg.solve(system, right)
         except np.linalg.LinAlgError as error:
             raise ContactError("the contact compliance is singular") from error
-        gap = gap_of(f, dd)
+        f, dd = np.zeros(len(offset)), solution[-1] if by_force else 0.0
+        f[on] = solution[: len(on)]
+        gap = offset + compliance @ f + lever * dd
         wrong = np.where(active, f < -1e-12 * np.abs(f).max(), gap < -1e-11 * scale)
         count = int(wrong.sum())
         if not count:
             f[~active] = 0
-            return np.maximum(f, 0), dd, active, pivots
+            return np.maximum(f, 0), dd, active
         if count < best:
             best, patience = count, 8
         elif patience:
             patience -= 1
         else:
-            last = np.flatnonzero(wrong)[-1]
-            wrong = np.zeros_like(wrong)
-            wrong[last] = True
+            wrong[np.flatnonzero(wrong)[:-1]] = False
         flipped = active ^ wrong
-        if keep_one and not flipped.any():
+        if by_force and not flipped.any():
             flipped[np.argmax(np.where(active, f, -np.inf))] = True
         active = flipped
     raise ContactError("the active set keeps cycling")

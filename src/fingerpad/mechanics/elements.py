@@ -4,17 +4,17 @@ is paired with.
 Every element is a mixed one. The dilatation ``J - 1`` is projected, element by element, on a small
 pressure space; the number of its modes is all that tells a locking element from a sound one:
 
-=========  ==================  ==========================================  ===================================
-name       displacement        pressure modes                              use
-=========  ==================  ==========================================  ===================================
-``Q2P1``   9-node quad         3 (linear in x, y; discontinuous)           default
-``Q1P0``   4-node quad         1 (mean dilatation)                         external linear quads
-``P2B``    6-node triangle     3                                           external triangles (with a bubble node)
-``Q2``     9-node quad         9 (= pointwise, no projection)              teaching case: oscillates
-``Q1``     4-node quad         4 (= pointwise)                             teaching case: locks
-``Q2R``    9-node quad, 2 x 2  4 (= pointwise at the reduced points)       teaching case: may hourglass
-``P2``     6-node triangle     6 (= pointwise)                             teaching case: oscillates
-=========  ==================  ==========================================  ===================================
+=========  ==================  ==============================  ===================================
+name       displacement        pressure modes                  use
+=========  ==================  ==============================  ===================================
+``Q2P1``   9-node quad         3 (linear, discontinuous)       default
+``Q1P0``   4-node quad         1 (mean dilatation)             external linear quads
+``P2B``    6-node triangle     3                               external triangles (bubble node)
+``Q2``     9-node quad         9 (= pointwise)                 teaching case: oscillates
+``Q1``     4-node quad         4 (= pointwise)                 teaching case: locks
+``Q2R``    9-node quad, 2 x 2  4 (pointwise, reduced points)   teaching case: may hourglass
+``P2``     6-node triangle     6 (= pointwise)                 teaching case: oscillates
+=========  ==================  ==============================  ===================================
 
 Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2
 with linear pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.
@@ -95,13 +95,6 @@ ELEMENTS = {
 #: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges
 #: (start, end, middle).
 EDGE_POINTS, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(4)
-
-
-def edge_shape(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on
-    [-1, 1].
-    """
-    return edge_values(order, EDGE_POINTS)
 
 
 def edge_values(order: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ own, in the element's pressure modes, which the projection ``v`` of J - 1 is to 
 and Pister 1985): kappa (d v - d^2/2), the pressure being kappa d. Newton's method, with the tangent
 of a state ``0`` that need not be the present one, is
 
-    (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),      d <- v(u) + B0 du,      B = dv/du,
+    (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),    d <- v(u) + B0 du,    B = dv/du,
 
 so that pressure is found by equilibrium, and never as kappa times a small difference of
 displacements: what ``v`` and ``d`` still differ by after a step is a change of volume too small to
@@ -18,7 +18,7 @@ load go on in one step.
 import numpy as np
 
 from fingerpad.laws import NEO_HOOKE, Assigned
-from fingerpad.mechanics import compiled
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.space import Space, blocked
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.materials import Prony
@@ -63,7 +63,7 @@ class FiniteStrainBody:
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self._loops = [
             (
-                compiled.loops(part.law, *space.sizes),
+                kernels.loops(part.law, *space.sizes),
                 np.ascontiguousarray(part.constants.T),
                 space.blocks(part.elements),
             )
@@ -169,8 +169,8 @@ class FiniteStrainBody:
         """
         force = internal.copy()
         amiss = self._volume - self._dilatation
-        compiled.volume_loop(*self.space.sizes)(
-            self._about[0], amiss, self.space.mesh, self.bulk, force
+        kernels.volume_loop(*self.space.sizes)(
+            self._about[0], amiss, self.space.mesh, self.space.all_blocks, self.bulk, force
         )
         return force
 
@@ -180,7 +180,9 @@ class FiniteStrainBody:
         """
         about, before = self._about
         found = np.empty_like(self._volume)
-        compiled.dilatation_loop(*self.space.sizes)(about, share * du, self.space.mesh, found)
+        kernels.dilatation_loop(*self.space.sizes)(
+            about, share * du, self.space.mesh, self.space.all_blocks, found
+        )
         self._dilatation = self._volume + (found - before)
         self.u = self.u + share * du
 
@@ -280,7 +282,7 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
     """
     out = np.empty((len(cells), 4))
     for part in laws:
-        compiled.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
+        kernels.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
     return out
 
 

@@ -15,16 +15,14 @@ small dense system. What a zone's softness adds to the gaps it takes from the sl
 that has changed in the step.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from fingerpad.mechanics import compiled
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.contact import (
     ContactError,
     ContactStep,
     Flexibility,
-    Zone,
+    Rows,
     pressing_stiffness,
     require_stable,
     respond,
@@ -34,16 +32,6 @@ from fingerpad.mechanics.contact import (
 #: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on
 #: the skin along +-t.
 STICK = 0
-
-
-@dataclass
-class FrictionStep(ContactStep):
-    """Solution of one linearised frictional problem: also the tangential forces (nz,) N/m and the
-    states (nz,).
-    """
-
-    tangential: np.ndarray | None = None
-    state: np.ndarray | None = None
 
 
 class Coulomb:
@@ -96,59 +84,57 @@ class Coulomb:
 
     def solve(
         self,
-        zone: Zone,
-        part: slice,
+        rows: Rows,
         schur,
         right,
-        gap,
-        gradient,
-        curvature,
         previous_force,
         active,
         motion,
         *,
-        partner=None,
         force: float | None = None,
         depth_change: float | None = None,
         flexible: Flexibility | None = None,
-    ) -> FrictionStep:
-        """Solve the linearised unilateral and frictional problem exactly; arguments as of
-        :func:`contact.solve_contact`.
+    ) -> ContactStep:
+        """Solve the linearised unilateral and frictional problem exactly.
 
-        Args:
-            part: where the zone's rows are kept. motion: (nz, 2) m, of their points over the
-            profile since the step began. partner: (nz,) the row of the same point's other side in a
-            valley, or -1; None where no point has two.
+        Parameters
+        ----------
+        motion : (nr, 2) array
+            m, of the points over the profile since the step began. The other parameters are those
+            of :func:`contact.solve_contact`.
 
-        Raises:
-            ContactError: no consistent set of states is found.
+        Raises
+        ------
+        ContactError
+            No consistent set of states is found.
         """
-        tangent = tangents(gradient)
+        zone, part = rows.zone, rows.place
+        tangent = tangents(rows.gradient)
         moved = np.einsum("ni,ni->n", motion, tangent)
         if zone.softness is not None:
             moved = moved - zone.softness_along @ self._before[part]
 
         def attempt(flexible):
-            answer = respond(zone, flexible, right, [gradient, tangent])
-            offset = answer.free + np.concatenate([gap, moved])
-            load = None
-            if depth_change is not None:
-                offset = offset + answer.lever * depth_change
-            else:
+            answer = respond(zone, flexible, right, [rows.gradient, tangent])
+            offset, load = answer.free + np.concatenate([rows.gap, moved]), None
+            if depth_change is None:
                 load = force - answer.load_shift
-            f, tau, dd, on, state, pivots, yields = _solve(
-                self.coefficient, answer, offset, load, active, self.state[part], partner
+            else:
+                offset = offset + answer.lever * depth_change
+            f, tau, found, on, state, yields = _solve(
+                self.coefficient, answer, offset, load, active, self.state[part], rows.partner
             )
-            require_stable(flexible, answer.compliance[: len(gap), : len(gap)], on)
-            dd = depth_change if depth_change is not None else dd
+            require_stable(flexible, answer.compliance[: len(f), : len(f)], on)
+            dd = found if depth_change is None else depth_change
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(
-                du, dd, f, on, pivots, flexible, stiffness=yields, tangential=tau, state=state
+            return ContactStep(
+                du, dd, f, on, flexible, stiffness=yields, tangential=tau, state=state
             )
 
-        return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
+        geometry = rows.gradient, rows.curvature
+        return until_stable(attempt, zone, schur, *geometry, previous_force, flexible)
 
-    def accept(self, part: slice, step: FrictionStep) -> None:
+    def accept(self, part: slice, step: ContactStep) -> None:
         """Take over forces and states of a solution."""
         self.tangential[:], self.state[:] = 0, 0
         self.tangential[part], self.state[part] = step.tangential, step.state
@@ -217,8 +203,7 @@ class _Cycling(ContactError):
 
 
 def _solve(mu, answer, offset, load, active, state, partner=None):
-    """States, forces and depth change of the linearised problem; returns (f, tau, depth change,
-    active, state, pivots, stiffness).
+    """Forces f and tau, depth change, closed gaps, states and stiffness of the linearised problem.
 
     A node that comes into contact slips at first, against its motion: entering as sticking makes
     the states cycle. Where friction is so large that slipping nodes wedge themselves in it is the
@@ -235,12 +220,10 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
     f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        *found, active, state, pivots, yields = _exchange(
-            mu, answer, offset, load, active, state, bound=bound, partner=partner
-        )
-        f, tau, dd = found
+        found = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
+        f, _, _, active, state, _ = found
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
-            return f, tau, dd, active, state, pivots, yields
+            return found
     raise _Cycling("stick and slip keep cycling")
 
 
@@ -269,9 +252,7 @@ def _exchange(
     stiffness = 0.5 / np.where(held, np.inf, yielding)
     scale = max(np.abs(offset).max(), 1e-12)
     best, patience, seen, single = 2 * n + 1, 10, set(), set()
-    for pivots in range(1, 60 + 2 * n):
-        if load is not None and not active.any():
-            raise ContactError("no node can carry the force")
+    for exchange in range(1, 60 + 2 * n):
         free = np.ones(n, bool) if partner is None else ~((partner >= 0) & active & active[partner])
         on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held & free)
         share = mu * state * free if bound is None else np.zeros(n)
@@ -279,7 +260,7 @@ def _exchange(
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
         system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
-        compiled.exchanged(a, share, on, stick, system)
+        kernels.exchanged(a, share, on, stick, system)
         needed = offset if bound is None else offset + a[:, n:] @ given
         right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:
@@ -316,25 +297,18 @@ def _exchange(
             # what is left of the depth's own equation: the second solution is of a unit of it
             else:
                 yields = 1 / solution[-1, 1] if solution[-1, 1] else None
-            return (
-                np.maximum(f, 0),
-                tau,
-                dd,
-                active,
-                np.where(active, state, 0).astype(np.int8),
-                pivots,
-                yields,
-            )
+            state = np.where(active, state, 0).astype(np.int8)
+            return np.maximum(f, 0), tau, dd, active, state, yields
         key = (active.tobytes(), state.tobytes())
         if count < best:
             best, patience = count, 10
         elif patience and key not in seen:
             patience -= 1
         else:  # one at a time, which either ends or comes round
-            if (*key, pivots % 2) in single:
+            if (*key, exchange % 2) in single:
                 break
-            single.add((*key, pivots % 2))
-            last = np.flatnonzero(wrong | slides | sticks)[-1 if pivots % 2 else 0]
+            single.add((*key, exchange % 2))
+            last = np.flatnonzero(wrong | slides | sticks)[-1 if exchange % 2 else 0]
             only = np.arange(n) == last
             wrong, slides, sticks = wrong & only, slides & only, sticks & only
         seen.add(key)

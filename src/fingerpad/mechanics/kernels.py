@@ -7,7 +7,7 @@ operator ``d(cof F) = C0 : dF`` of two dimensions, and the law's ``m, t`` and ``
     P  = m (F - t/(3 J) c) + p c + F H
     dP = (m I + H) dF - (m t/(3 J) - p_lag) C0 : dF
          + f F (F : dF) + g (F (c : dF) + c (F : dF)) + h c (c : dF)                 [isochoric]
-         + kappa sum_a psi_a int psi_a c : dF                                        [dilatation, rank = pressure modes]
+         + kappa sum_a psi_a int psi_a c : dF               [dilatation, rank = pressure modes]
 
 so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it
 is drawn back to the reference cell, whose gradients are the same for all elements, and the loops
@@ -21,10 +21,11 @@ with its elements as the last axis, and the innermost loops are over them, as wi
 processor's vectors are. Only the tangent's matrices are multiplied element by element: there they
 are over rows.
 
-All functions live in this one module, for what is kept of them on disk (:mod:`compiled`, through
-which they are called) knows of changes of this file and of the laws' alone.
+Numba keeps what it compiles as long as this file stays as it is. A loop that a law or the sizes of
+an element are compiled into has a file of its own, named after them and the law's source.
 """
 
+from collections.abc import Callable
 from functools import cache
 from types import SimpleNamespace
 
@@ -33,15 +34,12 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic, overload, register_jitable
 
+from fingerpad.compiled import JIT
 from fingerpad.laws import Law
 from fingerpad.laws.law import isochoric
 
-_JIT = {
-    "fastmath": {"contract", "nsz", "reassoc", "arcp"},
-    "error_model": "numpy",
-    "boundscheck": False,
-}
-_INLINE = _JIT | {"inline": "always"}
+_JIT = JIT | {"fastmath": {"contract", "nsz", "reassoc", "arcp"}}
+_INLINE = _JIT | {"inline": "always", "cache": False}
 
 _LANES = 8
 """Numbers that a processor's vector may hold: rows are filled up with zeros to a multiple of it."""
@@ -69,7 +67,7 @@ most.
 """
 
 
-@overload(isochoric, jit_options=_JIT, inline="always")
+@overload(isochoric, jit_options=_JIT | {"cache": False}, inline="always")
 def _isochoric_factor(jac):
     """J^(-2/3) from its exponent, by two steps of fourth order: to two units in the last place, at
     a tenth of a power's cost.
@@ -187,146 +185,171 @@ def exchanged(compliance, share, on, stick, out):
             out[touching + r, touching + c] = tangential[points + stick[r]]
 
 
-@cache
-def _common(nodes: int, points: int, modes: int) -> tuple:
-    """What the loops over elements have in common, for elements of these sizes.
+@njit(**_INLINE)
+def _deform(nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f):
+    """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5,
+    nq, ...).
 
-    Each works on those of a block from ``first`` to before ``last``; ``start`` is the number of the
-    block's own first. Arrays have the elements of a block as their last axis. The three are
-    unsigned: an index that could count from the end would make gathers of what are rows.
+    ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their
+    gradients on the reference cell.
+    Returns the smallest determinant.
     """
-
-    @njit(**_INLINE)
-    def deform(u, cells, reference, inverse, start, first, last, local, drawn, f):
-        """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5,
-        nq, ...).
-
-        ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their
-        gradients on the reference cell.
-        Returns the smallest determinant.
-        """
-        for k in range(first, last):
-            for a in range(nodes):
-                local[0, a, k] = u[cells[start + k, a], 0]
-                local[1, a, k] = u[cells[start + k, a], 1]
-        for i in range(2):
-            for c in range(2 * points):
-                for k in range(first, last):
-                    total = 0.0
-                    for a in range(nodes):
-                        total += local[i, a, k] * reference[a, c]
-                    drawn[i, c, k] = total
-        smallest = np.inf
-        for q in range(points):
-            low = np.inf
-            for k in range(first, last):
-                i11, i12, i21, i22 = (
-                    inverse[0, q, k],
-                    inverse[1, q, k],
-                    inverse[2, q, k],
-                    inverse[3, q, k],
-                )
-                x1, x2, y1, y2 = (
-                    drawn[0, q, k],
-                    drawn[0, points + q, k],
-                    drawn[1, q, k],
-                    drawn[1, points + q, k],
-                )
-                f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
-                f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
-                jac = f11 * f22 - f12 * f21
-                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
-                low = min(low, jac)
-            smallest = min(smallest, low)
-        return smallest
-
-    @njit(**_INLINE)
-    def project(weight, psi, first, last, f, theta):
-        """Their dilatation modes into ``theta`` (nm, ...)."""
-        for m in range(modes):
+    for k in range(first, last):
+        for a in range(nodes):
+            local[0, a, k] = u[cells[start + k, a], 0]
+            local[1, a, k] = u[cells[start + k, a], 1]
+    for i in range(2):
+        for c in range(2 * points):
             for k in range(first, last):
                 total = 0.0
-                for q in range(points):
-                    total += weight[q, k] * psi[m, q, k] * (f[4, q, k] - 1.0)
-                theta[m, k] = total
-
-    @njit(**_INLINE)
-    def to_nodes(reference, first, last, drawn, local):
-        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
-        ``local`` (2, nen, ...).
-        """
-        for i in range(2):
-            for a in range(nodes):
-                for k in range(first, last):
-                    total = 0.0
-                    for c in range(2 * points):
-                        total += drawn[i, c, k] * reference[a, c]
-                    local[i, a, k] = total
-
-    @njit(**_INLINE)
-    def add(cells, start, first, last, local, force):
-        """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
+                for a in range(nodes):
+                    total += local[i, a, k] * reference[a, c]
+                drawn[i, c, k] = total
+    smallest = np.inf
+    for q in range(points):
+        low = np.inf
         for k in range(first, last):
-            for a in range(nodes):
-                force[cells[start + k, a], 0] += local[0, a, k]
-                force[cells[start + k, a], 1] += local[1, a, k]
+            i11, i12, i21, i22 = _four(inverse, q, k)
+            x1, x2, y1, y2 = (
+                drawn[0, q, k],
+                drawn[0, points + q, k],
+                drawn[1, q, k],
+                drawn[1, points + q, k],
+            )
+            f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
+            f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
+            jac = f11 * f22 - f12 * f21
+            f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
+            low = min(low, jac)
+        smallest = min(smallest, low)
+    return smallest
 
-    return deform, project, to_nodes, add
+
+@njit(**_INLINE)
+def _project(points, modes, weight, psi, first, last, f, theta):
+    """Their dilatation modes into ``theta`` (nm, ...)."""
+    for m in range(modes):
+        for k in range(first, last):
+            total = 0.0
+            for q in range(points):
+                total += weight[q, k] * psi[m, q, k] * (f[4, q, k] - 1.0)
+            theta[m, k] = total
+
+
+@njit(**_INLINE)
+def _to_nodes(nodes, points, reference, first, last, drawn, local):
+    """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
+    ``local`` (2, nen, ...).
+    """
+    for i in range(2):
+        for a in range(nodes):
+            for k in range(first, last):
+                total = 0.0
+                for c in range(2 * points):
+                    total += drawn[i, c, k] * reference[a, c]
+                local[i, a, k] = total
+
+
+@njit(**_INLINE)
+def _add(nodes, cells, start, first, last, local, force):
+    """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
+    for k in range(first, last):
+        for a in range(nodes):
+            force[cells[start + k, a], 0] += local[0, a, k]
+            force[cells[start + k, a], 1] += local[1, a, k]
+
+
+@njit(**_INLINE)
+def _four(values, q, k):
+    """Components 11, 12, 21, 22 at a point of an element."""
+    return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
+
+
+@njit(**_INLINE)
+def _swap_volumes(modes, start, first, last, theta, volume, dilatation, out):
+    """Store modes ``theta`` in ``volume`` (ne, nm) and read ``dilatation`` (ne, nm), which may be
+    the same array, into ``out`` (nm, ...).
+    """
+    for m in range(modes):
+        for k in range(first, last):
+            volume[start + k, m] = theta[m, k]
+        for k in range(first, last):
+            out[m, k] = dilatation[start + k, m]
+
+
+@njit(**_INLINE)
+def _add_rows(rows, columns, depth, left, right, row, places, n, data):
+    """Add the upper triangle of the product left right to ``data``, from its ``n``-th place on.
+
+    Returns the number of the place after the last.
+    """
+    for a in range(rows):
+        for b in range(right.shape[1]):
+            total = 0.0
+            for c in range(depth):
+                total += left[a, c] * right[c, b]
+            row[b] = total
+        for b in range(a, columns):
+            data[places[n]] += row[b]
+            n += 1
+    return n
+
+
+def _compiled(loop: Callable, law: Law | None, *sizes: int):
+    """A loop, compiled for a law and the sizes of an element.
+
+    Its cache file is named after both and the law's source: processes that compile different ones
+    at once keep apart, and an edited law is compiled again. The loops of a law from outside this
+    package, whose helpers are not known, are not kept.
+    """
+    options = _JIT
+    if law is not None:
+        loop.__qualname__ += f"-{law.name}-{law.source[:16]}"
+        if not law.stress.__module__.startswith("fingerpad."):
+            options = _JIT | {"cache": False}
+    loop.__qualname__ += "".join(f"-{size}" for size in sizes)
+    return njit(**options)(loop)
 
 
 @cache
 def dilatation_loop(nodes: int, points: int, modes: int):
     """The loop that predicts dilatations, for elements of these sizes."""
-    deform, project, *_ = _common(nodes, points, modes)
 
-    @njit(**_JIT)
-    def predict_dilatation(u, du, mesh, out):
+    def predict_dilatation(u, du, mesh, blocks, out):
         """Linear prediction ``int psi_a (J - 1 + cof F : grad du)`` of the dilatation modes, into
         ``out`` (ne, nm).
         """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, d, theta = (
-            np.empty((5, points, together)),
-            np.empty((5, points, together)),
-            np.empty((modes, together)),
-        )
-        for block in range(len(weights)):
-            begin = block * together
-            start, first, last = (
-                np.uint64(begin),
-                np.uint64(0),
-                np.uint64(min(together, len(cells) - begin)),
+        f, d = np.empty((5, points, together)), np.empty((5, points, together))
+        theta = np.empty((modes, together))
+        for block, first, last in blocks:
+            start, inverse = block * np.uint64(together), inverses[block]
+            _deform(
+                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
             )
-            deform(u, cells, reference, inverses[block], start, first, last, local, drawn, f)
-            deform(du, cells, reference, inverses[block], start, first, last, local, drawn, d)
+            _deform(
+                nodes, points, du, cells, reference, inverse, start, first, last, local, drawn, d
+            )
             for q in range(points):
                 for k in range(first, last):
-                    d11, d22 = d[0, q, k] - 1.0, d[3, q, k] - 1.0
-                    f[4, q, k] += (
-                        f[3, q, k] * d11
-                        - f[2, q, k] * d[1, q, k]
-                        - f[1, q, k] * d[2, q, k]
-                        + f[0, q, k] * d22
-                    )
-            project(weights[block], all_psi[block], first, last, f, theta)
+                    f11, f12, f21, f22 = _four(f, q, k)
+                    d11, d12, d21, d22 = _four(d, q, k)
+                    f[4, q, k] += f22 * (d11 - 1.0) - f21 * d12 - f12 * d21 + f11 * (d22 - 1.0)
+            _project(points, modes, weights[block], all_psi[block], first, last, f, theta)
             for m in range(modes):
                 for k in range(first, last):
                     out[start + k, m] = theta[m, k]
 
-    return predict_dilatation
+    return _compiled(predict_dilatation, None, nodes, points, modes)
 
 
 @cache
 def volume_loop(nodes: int, points: int, modes: int):
-    """The loop for what pressures on a given shape are worth at the nodes, for elements of these
-    sizes.
-    """
-    deform, _, to_nodes, add = _common(nodes, points, modes)
+    """The loop for the nodal forces of pressures on a given shape, for elements of these sizes."""
 
-    @njit(**_JIT)
-    def force_of_dilatation(u, dilatation, mesh, kappa, force):
+    def force_of_dilatation(u, dilatation, mesh, blocks, kappa, force):
         """Nodal forces ``int kappa (psi_a dilatation_a) cof F : grad v``, accumulated in ``force``
         (n, 2).
 
@@ -334,41 +357,30 @@ def volume_loop(nodes: int, points: int, modes: int):
         """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
-        local, drawn, f = (
-            np.empty((2, nodes, together)),
-            np.empty((2, 2 * points, together)),
-            np.empty((5, points, together)),
-        )
-        for block in range(len(weights)):
-            begin = block * together
-            start, first, last = (
-                np.uint64(begin),
-                np.uint64(0),
-                np.uint64(min(together, len(cells) - begin)),
-            )
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
+        f = np.empty((5, points, together))
+        for block, first, last in blocks:
+            start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            _deform(
+                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
+            )
             for q in range(points):
                 for k in range(first, last):
                     p = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * dilatation[start + k, m]
                     p *= kappa[start + k] * weight[q, k]
-                    i11, i12, i21, i22 = (
-                        inverse[0, q, k],
-                        inverse[1, q, k],
-                        inverse[2, q, k],
-                        inverse[3, q, k],
-                    )
-                    f11, f12, f21, f22 = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k]
+                    i11, i12, i21, i22 = _four(inverse, q, k)
+                    f11, f12, f21, f22 = _four(f, q, k)
                     drawn[0, q, k] = p * (f22 * i11 - f21 * i21)
                     drawn[0, points + q, k] = p * (f22 * i12 - f21 * i22)
                     drawn[1, q, k] = p * (f11 * i21 - f12 * i11)
                     drawn[1, points + q, k] = p * (f11 * i22 - f12 * i12)
-            to_nodes(reference, first, last, drawn, local)
-            add(cells, start, first, last, local, force)
+            _to_nodes(nodes, points, reference, first, last, drawn, local)
+            _add(nodes, cells, start, first, last, local, force)
 
-    return force_of_dilatation
+    return _compiled(force_of_dilatation, None, nodes, points, modes)
 
 
 @cache
@@ -382,13 +394,11 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     says which elements follow it: those of a block, from the first to before the last
     (:meth:`Space.blocks`).
     """
-    deform, project, to_nodes, add = _common(nodes, points, modes)
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
 
-    @njit(**_JIT)
     def assemble_tangent(
         u,
         mesh,
@@ -444,26 +454,20 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
             smallest = min(
-                smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+                smallest,
+                _deform(
+                    nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
+                ),
             )
             if smallest <= 0.0:
                 return smallest
-            project(weight, psi, first, last, f, theta)
-            for m in range(modes):
-                for k in range(first, last):
-                    volume[start + k, m] = theta[m, k]
-                for k in range(first, last):
-                    lag[m, k] = dilatation[start + k, m]
+            _project(points, modes, weight, psi, first, last, f, theta)
+            _swap_volumes(modes, start, first, last, theta, volume, dilatation, lag)
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = (
-                        f[0, q, k],
-                        f[1, q, k],
-                        f[2, q, k],
-                        f[3, q, k],
-                        f[4, q, k],
-                    )
+                    f11, f12, f21, f22 = _four(f, q, k)
+                    jac = f[4, q, k]
                     p = plag = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
@@ -484,7 +488,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     answer[3, k], answer[4, k], answer[5, k] = fold, alpha, beta
                 for k in range(first, last):
                     w = weight[q, k]
-                    f11, f12, f21, f22 = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k]
+                    f11, f12, f21, f22 = _four(f, q, k)
                     mod, p, cross = answer[0, k], answer[1, k], answer[2, k]
                     fold, alpha, beta = answer[3, k], answer[4, k], answer[5, k]
                     l11 = l22 = mod
@@ -493,12 +497,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         l11 += history[block, 0, q, k]
                         l22 += history[block, 1, q, k]
                         l12 += history[block, 2, q, k]
-                    i11, i12, i21, i22 = (
-                        inverse[0, q, k],
-                        inverse[1, q, k],
-                        inverse[2, q, k],
-                        inverse[3, q, k],
-                    )
+                    i11, i12, i21, i22 = _four(inverse, q, k)
                     # rows of F, its cofactor and (m I + H) J^-T on the reference cell
                     fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
                     fy1, fy2 = f21 * i11 + f22 * i21, f21 * i12 + f22 * i22
@@ -535,8 +534,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     found[15, q, k] = lap11 + fy1 * ay1 + cy1 * by1
                     found[16, q, k] = lap12 + fy1 * ay2 + cy1 * by2
                     found[17, q, k] = lap22 + fy2 * ay2 + cy2 * by2
-            to_nodes(reference, first, last, drawn, local)
-            add(cells, start, first, last, local, force)
+            _to_nodes(nodes, points, reference, first, last, drawn, local)
+            _add(nodes, cells, start, first, last, local, force)
             for m in range(modes):
                 for q in range(points):
                     for k in range(first, last):
@@ -544,7 +543,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         part[0, points + q, k] = psi[m, q, k] * cofactor[1, q, k]
                         part[1, q, k] = psi[m, q, k] * cofactor[2, q, k]
                         part[1, points + q, k] = psi[m, q, k] * cofactor[3, q, k]
-                to_nodes(reference, first, last, part, modal[m])
+                _to_nodes(nodes, points, reference, first, last, part, modal[m])
             for k in range(first, last):
                 e = start + k
                 for d in range(10):
@@ -567,28 +566,11 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         right_x[2 * points + m, a] = kappa[e] * x
                         right_x[2 * points + m, nodes + a] = kappa[e] * y
                         right_y[2 * points + m, a] = kappa[e] * y
-                n = 0
-                for a in range(cells.shape[1]):
-                    for b in range(right_x.shape[1]):
-                        total = 0.0
-                        for c in range(2 * points + modes):
-                            total += left[0, a, c] * right_x[c, b]
-                        row[b] = total
-                    for b in range(a, 2 * nodes):
-                        data[scatter[e, n]] += row[b]
-                        n += 1
-                for a in range(cells.shape[1]):
-                    for b in range(right_y.shape[1]):
-                        total = 0.0
-                        for c in range(2 * points + modes):
-                            total += left[1, a, c] * right_y[c, b]
-                        row[b] = total
-                    for b in range(a, nodes):
-                        data[scatter[e, n]] += row[b]
-                        n += 1
+                rows, depth, places = cells.shape[1], 2 * points + modes, scatter[e]
+                n = _add_rows(rows, 2 * nodes, depth, left[0], right_x, row, places, 0, data)
+                _add_rows(rows, nodes, depth, left[1], right_y, row, places, n, data)
         return smallest
 
-    @njit(**_JIT)
     def internal_force(
         u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force
     ):
@@ -607,26 +589,20 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
             smallest = min(
-                smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+                smallest,
+                _deform(
+                    nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
+                ),
             )
             if smallest <= 0.0:
                 return smallest
-            project(weight, psi, first, last, f, theta)
-            for m in range(modes):
-                for k in range(first, last):
-                    volume[start + k, m] = theta[m, k]
-                for k in range(first, last):
-                    theta[m, k] = dilatation[start + k, m]
+            _project(points, modes, weight, psi, first, last, f, theta)
+            _swap_volumes(modes, start, first, last, theta, volume, dilatation, theta)
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = (
-                        f[0, q, k],
-                        f[1, q, k],
-                        f[2, q, k],
-                        f[3, q, k],
-                        f[4, q, k],
-                    )
+                    f11, f12, f21, f22 = _four(f, q, k)
+                    jac = f[4, q, k]
                     p = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
@@ -644,21 +620,15 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
                     p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
                     w = weight[q, k]
-                    i11, i12, i21, i22 = (
-                        inverse[0, q, k],
-                        inverse[1, q, k],
-                        inverse[2, q, k],
-                        inverse[3, q, k],
-                    )
+                    i11, i12, i21, i22 = _four(inverse, q, k)
                     drawn[0, q, k] = w * (p11 * i11 + p12 * i21)
                     drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
                     drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
                     drawn[1, points + q, k] = w * (p21 * i12 + p22 * i22)
-            to_nodes(reference, first, last, drawn, local)
-            add(cells, start, first, last, local, force)
+            _to_nodes(nodes, points, reference, first, last, drawn, local)
+            _add(nodes, cells, start, first, last, local, force)
         return smallest
 
-    @njit(**_JIT)
     def commit(
         u,
         mesh,
@@ -688,16 +658,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight = inverses[block], weights[block]
-            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            _deform(
+                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
+            )
             for q in range(points):
                 for k in range(first, last):
-                    f11, f12, f21, f22, jac = (
-                        f[0, q, k],
-                        f[1, q, k],
-                        f[2, q, k],
-                        f[3, q, k],
-                        f[4, q, k],
-                    )
+                    f11, f12, f21, f22 = _four(f, q, k)
+                    jac = f[4, q, k]
                     c11, c22, c12 = (
                         f11 * f11 + f21 * f21,
                         f12 * f12 + f22 * f22,
@@ -734,7 +701,6 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                             new_stretch[block, c, q, k] = now[4 + c, k]
         return work
 
-    @njit(**_JIT)
     def energies(u, mesh, mu, constants, blocks, pointwise, beta, branches):
         """Energy of the network's change of shape and that of the Maxwell springs, tau_i : tau_i /
         (4 beta_i mu), J/m.
@@ -749,17 +715,14 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight = inverses[block], weights[block]
-            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            _deform(
+                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
+            )
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = (
-                        f[0, q, k],
-                        f[1, q, k],
-                        f[2, q, k],
-                        f[3, q, k],
-                        f[4, q, k],
-                    )
+                    f11, f12, f21, f22 = _four(f, q, k)
+                    jac = f[4, q, k]
                     i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
                     w = weight[q, k]
                     network += w * law_energy(i1, jac, mu[e], constants[:, e])
@@ -777,11 +740,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                             springs += weight[q, k] * square / (4.0 * beta[b] * mu[e])
         return network, springs
 
+    made = (assemble_tangent, internal_force, commit, energies)
     return SimpleNamespace(
-        assemble_tangent=assemble_tangent,
-        internal_force=internal_force,
-        commit=commit,
-        energies=energies,
+        **{loop.__name__: _compiled(loop, law, nodes, points, modes) for loop in made}
     )
 
 
@@ -791,7 +752,6 @@ def stress_loop(law: Law):
     law_stress = law.stress
     register_jitable(inline="always")(law_stress)
 
-    @njit(**_JIT)
     def isochoric_stress(u, cells, grad, mu, constants, only, out):
         """Isochoric second Piola-Kirchhoff stress 11, 22, 12, 33 into ``out`` (np, 4) where only
         (np,) says so.
@@ -814,4 +774,4 @@ def stress_loop(law: Law):
             mod, t = law_stress(i1, jac, mu[e], constants[e])
             out[e, 0], out[e, 1], out[e, 2], out[e, 3] = _isochoric(mod, t, i1, c11, c22, c12, jac)
 
-    return isochoric_stress
+    return _compiled(isochoric_stress, law)

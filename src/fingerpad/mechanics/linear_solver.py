@@ -11,15 +11,17 @@ SuperLU gives the same answers, slower.
 from __future__ import annotations
 
 import ctypes
+import os
 import sys
-from typing import TYPE_CHECKING
+from functools import cache
+from pathlib import Path
 
 import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.sparse import csr_matrix, triu
+from scipy.sparse.linalg import splu
 
-from fingerpad.mechanics import dense
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
+from fingerpad.processes import threads
 
 
 class FactorisationError(RuntimeError):
@@ -30,66 +32,41 @@ class SymmetricPattern:
     """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry
     goes.
 
-    Found from pairs of nodes, of which there are a quarter as many as of equations.
+    Parameters
+    ----------
+    cells : (ne, nen) int array
+        Nodes of the elements, whose entries are in the order of components, then nodes.
+    equation : (n, nc) int array
+        Equation number of each component of a node, ascending; -1 where prescribed.
 
-    Args:
-        cells: (ne, nen) nodes of the elements, whose entries are in the order of components, then
-        nodes. equation: (n, nc) equation number of each component of a node, ascending; -1 where
-        prescribed.
+    Attributes
+    ----------
+    indptr, indices : int32 arrays
+        The pattern, of ``size`` equations and ``nonzeros`` entries.
+    scatter : (ne, nd (nd + 1) / 2) int32 array
+        Where the upper triangle of each element's matrix goes; ``nonzeros`` if prescribed.
 
-    Raises:
-        FactorisationError: a free node belongs to no element.
+    Raises
+    ------
+    FactorisationError
+        A free node belongs to no element.
     """
 
     def __init__(self, cells: np.ndarray, equation: np.ndarray):
-        nodes, components = equation.shape
-        free = equation >= 0
-        self.size = int(np.count_nonzero(free))
-        count = free.sum(axis=1)
-        rank = (free.cumsum(axis=1) - 1).astype(np.int32)  # of an equation among those of its node
-        rows, cols = np.triu_indices(cells.shape[1])
-        a, b = cells[:, rows].astype(np.int64), cells[:, cols].astype(np.int64)
-        keys, pair = np.unique(np.minimum(a, b) * nodes + np.maximum(a, b), return_inverse=True)
-        low, high = np.divmod(keys, nodes)
-        # in the rows of a node stand its own equations, then those of its higher neighbours
-        ends = np.concatenate([[0], np.cumsum(count[high])])
-        first, last = (
-            ends[np.searchsorted(low, np.arange(nodes))],
-            ends[np.searchsorted(low, np.arange(nodes), side="right")],
-        )
-        if (last - first < count).any():
-            raise FactorisationError("some nodes belong to no element")
-        lengths = ((last - first)[:, None] - rank)[free]
-        self.indptr = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int32)
-        self.nonzeros = int(self.indptr[-1])
-
-        number = np.zeros((cells.shape[1],) * 2, dtype=np.int64)
-        number[rows, cols] = number[cols, rows] = np.arange(
-            len(rows)
-        )  # of a pair of an element's nodes
-        at = np.concatenate([equation[cells, c] for c in range(components)], axis=1).astype(
-            np.int32
-        )
-        rows, cols = np.triu_indices(at.shape[1])
-        i, j = at[:, rows], at[:, cols]
+        self.size = int(np.count_nonzero(equation >= 0))
+        at = np.concatenate(list(np.moveaxis(equation[cells], -1, 0)), axis=1).astype(np.int32)
+        i, j = (at[:, side] for side in np.triu_indices(at.shape[1]))
         row, col = np.minimum(i, j), np.maximum(i, j)
-        rank = rank[free]
-        # equations of a node's lower neighbours, in its rows
-        before = (ends[:-1] - first[low]).astype(np.int32)[pair.reshape(a.shape)]
-        place = (
-            (self.indptr[:-1] - rank)[row]
-            + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]]
-            + rank[col]
-        )
-        place = np.where(
-            row >= 0, place, np.int32(self.nonzeros)
-        )  # the extra slot swallows prescribed entries
-        self.scatter = np.ascontiguousarray(
-            place
-        )  # an element's entries side by side, as the loops run through them
-        self.indices = np.empty(self.nonzeros + 1, dtype=np.int32)
-        self.indices[self.scatter] = col
-        self.indices = self.indices[:-1].copy()
+        free = row >= 0
+        row, col = row[free], col[free]
+        entries = np.ones(len(row), np.int8), (row, col)
+        pattern = csr_matrix(entries, shape=(self.size, self.size))
+        self.indptr, self.indices, self.nonzeros = pattern.indptr, pattern.indices, pattern.nnz
+        if not np.diff(self.indptr).all():
+            raise FactorisationError("some nodes belong to no element")
+        pattern.data = np.arange(self.nonzeros, dtype=np.int32)
+        self.scatter = np.full(free.shape, self.nonzeros, np.int32)
+        self.scatter[free] = np.asarray(pattern[row, col]).ravel()
 
     def new_data(self) -> np.ndarray:
         """Zeroed coefficient storage (nonzeros + 1,); the last entry is the discard slot."""
@@ -97,18 +74,35 @@ class SymmetricPattern:
 
     def matrix(self, data: np.ndarray) -> csr_matrix:
         """The full symmetric matrix (both triangles) as CSR."""
-        import scipy.sparse as sp  # here, for it is slow to import
+        upper = csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
+        return (upper + triu(upper, 1).T).tocsr()
 
-        upper = sp.csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
-        return (upper + sp.triu(upper, 1).T).tocsr()
+
+@cache
+def _mkl() -> ctypes.CDLL | None:
+    """Intel's Math Kernel Library with as many threads as this process may use, if installed."""
+    libraries = sorted(Path(sys.prefix, "lib").glob("libmkl_rt.so*"))
+    if not libraries:
+        return None
+    library = ctypes.CDLL(str(libraries[0]))
+    library.MKL_Set_Num_Threads(ctypes.c_int(threads()))
+    return library
 
 
 def pardiso_available() -> bool:
-    """Whether there is PARDISO, and it is wanted."""
-    return dense.mkl() is not None
+    """Whether PARDISO is installed and FINGERPAD_LINEAR_SOLVER does not name another solver."""
+    wanted = os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso"
+    return wanted and _mkl() is not None
 
 
 _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fault
+
+
+def _pointer(value: int | np.ndarray):
+    """How a number or an array is given to a library in C."""
+    if isinstance(value, np.ndarray):
+        return ctypes.c_void_p(value.ctypes.data)
+    return ctypes.byref(ctypes.c_int32(value))
 
 
 class PardisoCondensation:
@@ -121,7 +115,7 @@ class PardisoCondensation:
     name = "pardiso"
 
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
-        self._library = dense.mkl()
+        self._library = _mkl()
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         if np.any(np.diff(self.condensed) <= 0):
             raise ValueError("condensed equations must be ascending")
@@ -131,63 +125,22 @@ class PardisoCondensation:
         self._perm = np.zeros(pattern.size, dtype=np.int32)
         self._perm[self.condensed] = 1
         self._handle, self._parameters = np.zeros(64, np.int64), np.zeros(64, np.int32)
-        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia;
-        # precision; Schur complement, factors
-        for i, value in {
-            1: 1,
-            2: 2,
-            10: 8,
-            21: 1,
-            24: 1,
-            28: int(single),
-            36: 2 if len(self.condensed) else 0,
-        }.items():
-            self._parameters[i - 1] = value
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; precision; Schur
+        # complement with factors
+        self._parameters[[0, 1, 9, 20, 23]] = 1, 2, 8, 1, 1
+        self._parameters[[27, 35]] = single, 2 * bool(len(self.condensed))
         self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
     def _call(self, phase: int, right: np.ndarray, out: np.ndarray) -> int:
         """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand
         side, without a report.
         """
-        error = ctypes.c_int32(0)
-        numbers = (
-            ctypes.byref(ctypes.c_int32(value))
-            for value in (1, 1, -2, phase, self._pattern.size, 1, 0)
-        )
-        factors, matrix, kind, phase_, size, sides, report = numbers
-        handle, data, ia, ja, perm, parameters, b, x = (
-            ctypes.c_void_p(array.ctypes.data)
-            for array in (
-                self._handle,
-                self._data,
-                self._ia,
-                self._ja,
-                self._perm,
-                self._parameters,
-                right,
-                out,
-            )
-        )
-        self._library.pardiso(
-            handle,
-            factors,
-            matrix,
-            kind,
-            phase_,
-            size,
-            data,
-            ia,
-            ja,
-            perm,
-            sides,
-            parameters,
-            report,
-            b,
-            x,
-            ctypes.byref(error),
-        )
+        error, size = ctypes.c_int32(0), self._pattern.size
+        matrix = size, self._data, self._ia, self._ja, self._perm
+        given = self._handle, 1, 1, -2, phase, *matrix, 1, self._parameters, 0, right, out
+        self._library.pardiso(*map(_pointer, given), ctypes.byref(error))
         if error.value == _NO_MEMORY:
-            raise MemoryError(f"{self._pattern.size} equations are too many for PARDISO")
+            raise MemoryError(f"{size} equations are too many for PARDISO")
         return error.value
 
     def factor(self, data: np.ndarray) -> np.ndarray:
@@ -203,13 +156,6 @@ class PardisoCondensation:
         if self._call(22, self._dummy, schur) != 0 or not np.isfinite(schur).all():
             raise FactorisationError("the tangent is singular")
         return schur.astype(float, copy=False) if nc else np.zeros((0, 0))
-
-    @property
-    def negative_pivots(self) -> int:
-        """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without
-        contact forces.
-        """
-        return int(self._parameters[22])
 
     def forward(self, right: np.ndarray) -> np.ndarray:
         """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for
@@ -244,11 +190,8 @@ class SuperLUCondensation:
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray):
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         self._interior = np.setdiff1d(np.arange(pattern.size), self.condensed)
-        self.negative_pivots = 0
 
     def factor(self, data: np.ndarray) -> np.ndarray:
-        from scipy.sparse.linalg import splu  # here, for it is slow to import
-
         matrix = self._pattern.matrix(data).tocsc()
         i, c = self._interior, self.condensed
         try:
@@ -300,12 +243,13 @@ class Narrowed:
         if kept.all():
             self.schur = schur
             return True
-        factor = dense.cholesky(schur[np.ix_(rest, rest)])
-        if factor is None:
+        try:
+            self._factor = cho_factor(schur[np.ix_(rest, rest)], check_finite=False)
+        except LinAlgError:
             return False
-        self._factor, self._coupling = factor, np.asfortranarray(schur[np.ix_(rest, kept)])
-        self._answer = dense.solved(factor, self._coupling)
-        self.schur = schur[np.ix_(kept, kept)] - self._coupling.T @ self._answer
+        coupling = schur[np.ix_(rest, kept)]
+        self._answer = cho_solve(self._factor, coupling)
+        self.schur = schur[np.ix_(kept, kept)] - coupling.T @ self._answer
         return True
 
     def forward(self, right: np.ndarray) -> np.ndarray:
@@ -314,7 +258,7 @@ class Narrowed:
         if self._kept.all():
             return reduced
         rest = reduced[~self._kept]
-        self._alone = dense.solved(self._factor, rest)
+        self._alone = cho_solve(self._factor, rest)
         return reduced[self._kept] - self._answer.T @ rest
 
     def backward(self, values: np.ndarray) -> np.ndarray:
@@ -330,8 +274,6 @@ def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool 
     """The best available solver for this pattern, condensing onto the given equations (nc,);
     ``single``: precision will do.
     """
-    return (
-        PardisoCondensation(pattern, condensed, single)
-        if pardiso_available()
-        else SuperLUCondensation(pattern, condensed)
-    )
+    if pardiso_available():
+        return PardisoCondensation(pattern, condensed, single)
+    return SuperLUCondensation(pattern, condensed)

@@ -6,9 +6,10 @@ v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta times the deviatoric stre
 """
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from fingerpad.laws import Assigned
-from fingerpad.mechanics import compiled
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.finite_strain import everywhere_neo_hooke
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import step_coefficients
@@ -63,7 +64,7 @@ class SmallStrainBody:
         no_lag, volume = np.zeros((2, len(space.cells), space.psi.shape[2]))
         for part in self.laws:
             constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
-            compiled.loops(part.law, *space.sizes).assemble_tangent(
+            kernels.loops(part.law, *space.sizes).assemble_tangent(
                 zero,
                 space.mesh,
                 deviatoric * self.shear,
@@ -83,8 +84,6 @@ class SmallStrainBody:
 
     def _everything(self, upper):
         """The matrix (2 n, 2 n) of all degrees of freedom, also of those that are prescribed."""
-        from scipy.sparse import csr_matrix  # here, for it is slow to import
-
         dofs = np.concatenate([2 * self.space.cells, 2 * self.space.cells + 1], axis=1)
         rows, columns = np.triu_indices(dofs.shape[1])
         above = rows < columns
@@ -158,7 +157,9 @@ class SmallStrainBody:
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of div u."""
         space, out = self.space, np.empty((len(self.space.cells), self.space.psi.shape[2]))
-        compiled.dilatation_loop(*space.sizes)(np.zeros_like(self.u), self.u, space.mesh, out)
+        kernels.dilatation_loop(*space.sizes)(
+            np.zeros_like(self.u), self.u, space.mesh, space.all_blocks, out
+        )
         return out
 
     def save(self):

@@ -2,13 +2,12 @@
 pattern.
 """
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from fingerpad.mechanics.elements import EDGE_WEIGHTS, ELEMENTS, edge_shape
+from fingerpad.mechanics.elements import EDGE_POINTS, EDGE_WEIGHTS, ELEMENTS, edge_values
 from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.specimen.element_kinds import KINDS
 
@@ -33,25 +32,6 @@ def blocked(values: np.ndarray) -> np.ndarray:
     )
 
 
-@dataclass(frozen=True)
-class PlaneStrain:
-    """What a two-dimensional field means in three dimensions: no out-of-plane stretch, force per
-    contact length.
-
-    Attributes:
-        contact_length: m; newtons over it are the newtons per metre of the model.
-    """
-
-    contact_length: float = 1.0
-    out_of_plane_stretch: float = 1.0
-
-    def volume_weight(self, points: np.ndarray) -> np.ndarray:
-        """Volume per cross-section area at points (..., 2); an axisymmetric measure would return 2
-        pi r.
-        """
-        return np.ones(points.shape[:-1])
-
-
 class Space:
     """Displacement and pressure spaces on one mesh.
 
@@ -61,7 +41,7 @@ class Space:
         default for the kind. fixed: (n, 2) bool, prescribed degrees of freedom.
 
     Attributes:
-        points, cells: as used (with bubble nodes). weight (ne, nq) m^2 (times the measure); centres
+        points, cells: as used (with bubble nodes). weight (ne, nq) m^2; centres
         (ne, 2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the
         weight; equation (n, 2) equation number or -1; size. mesh: what the element loops read, as
         tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first coordinate
@@ -73,14 +53,13 @@ class Space:
         ValueError: an element is inverted or the element does not fit the mesh.
     """
 
-    def __init__(self, points, cells, kind, fixed, element=None, measure=None):
+    def __init__(self, points, cells, kind, fixed, element=None):
         points, cells, fixed = (
             np.asarray(points, float),
             np.asarray(cells, np.int32),
             np.asarray(fixed, bool),
         )
         self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
-        self.measure = measure or PlaneStrain()
         if kind == "tri6" and self.element.nodes_per_element == 7:
             centroid = -points[cells[:, :3]].sum(1) / 9 + 4 / 9 * points[cells[:, 3:]].sum(1)
             cells = np.column_stack([cells, len(points) + np.arange(len(cells), dtype=np.int32)])
@@ -99,7 +78,7 @@ class Space:
             raise ValueError(f"element {int(det.min(1).argmin())} is inverted")
         self._inverse = np.stack([d.T, -b.T, -c.T, a.T], axis=-1) / det[..., None]
         position = np.stack([x[..., i] @ self.element.values.T for i in (0, 1)], axis=-1)
-        self.weight = det * self.element.weights * self.measure.volume_weight(position)
+        self.weight = np.ascontiguousarray(det * self.element.weights)
         self.centres = x.mean(1)
         self._span = np.sqrt(self.weight.sum(1))
         modes = self._raw_modes(position)
@@ -172,6 +151,11 @@ class Space:
         ]
         return np.array(runs, dtype=np.uint64).reshape(-1, 3)
 
+    @cached_property
+    def all_blocks(self) -> np.ndarray:
+        """:meth:`blocks` of all elements."""
+        return self.blocks(np.ones(len(self.cells), bool))
+
     def to_equations(self, field: np.ndarray) -> np.ndarray:
         """Values of a nodal field (n, 2) at the free equations (size,)."""
         return field[~self.fixed]
@@ -193,7 +177,7 @@ def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     nodal load of a uniform pressure of one on the curve as it lies now, so force over it is
     pressure on straight and curved edges alike.
     """
-    values, slopes = edge_shape(edges.shape[1] - 1)
+    values, slopes = edge_values(edges.shape[1] - 1, EDGE_POINTS)
     tangent = np.einsum("qa,mai->mqi", slopes, points[edges])
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
     nodal = np.einsum("q,qa,mqi->mai", EDGE_WEIGHTS, values, normal)

@@ -9,18 +9,53 @@ through the step sizes; inertia is never solved.
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from operator import mul
+from typing import NamedTuple
 
 import numpy as np
 
 from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.contact_points import PER_NODE, ContactPoints
+from fingerpad.mechanics.friction import STICK, Coulomb
 from fingerpad.mechanics.linear_solver import FactorisationError, Narrowed, condensation
 from fingerpad.mechanics.pressure import contact_edges
 from fingerpad.mechanics.strides import Between, Strides, Touch
+from fingerpad.mechanics.valleys import Valleys
 from fingerpad.stimuli.motion import STEADY, Step
 
-_FOLDS = 0.02
-"""det F below which an iteration does not go."""
+#: An iteration stays above this det F.
+MIN_DET_F = 0.02
+#: It also stays above this share of the smallest det F before it, where that is at least a fifth
+#: of its way.
+DET_F_SHARE = 0.25
+#: Tolerance of the sum of all forces, relative to the contact force.
+SUM_TOLERANCE = 5e-4
+#: Tolerance of volumes, relative to the pressures, in units of the force tolerance.
+VOLUME_TOLERANCE = 10.0
+#: A force below this share of the largest so far is judged by that share.
+LEAST_SCALE = 1e-3
+#: More iterations while a node snaps round an edge: through an unstable state Newton's method only
+#: descends.
+SNAP_ITERATIONS = 60
+#: Iterations of all attempts at a scheduled step.
+MOST_ITERATIONS = 400
+MAX_HALVINGS = 10
+#: Largest share of the work that the energy found may differ by.
+ENERGY_SHARE = 0.35
+#: Reuse the factorised tangent while the residual is below this many tolerances.
+REUSE_BELOW = 100.0
+#: Reuse it only where convergence is expected within this many iterations more.
+REUSE_AHEAD = 2.0
+#: Factor anew when the steps since the last factorisation have taken this many iterations too many.
+REUSE_PATIENCE = 4
+#: Factor anew when the share of the stress that answers at once has changed by this much.
+REUSE_FACTOR_CHANGE = 0.1
+#: A push that points farther than this (rad) from the vertical comes from the side.
+SIDE_ANGLE = np.radians(50.0)
+#: During a stroke, condense anew where the condensed zone is this many times as wide as needed.
+CONDENSED_WIDTH = 2.0
+#: Narrow the contact zone where it is this many times as wide as needed.
+ZONE_WIDTH = 1.25
 FOLDED = "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
 """What to try where an element turns inside out."""
 
@@ -28,10 +63,16 @@ FOLDED = "a finer skin mesh, a fillet on sharp edges, or a smaller depth or forc
 class NonConvergence(RuntimeError):
     """A step could not be completed even after cutting.
 
-    Attributes:
-        time: s, where the last converged state stands. reason: what failed. advice: what to try.
-        hard: what is hard in the scene, for who knows it. records: the records of every converged
-        scheduled step.
+    Attributes
+    ----------
+    time : float
+        s, of the last converged state.
+    reason, advice : str
+        What failed, and what to try.
+    hard : tuple of str
+        What is hard in the scene, if known.
+    records : list of Record
+        Of every converged scheduled step.
     """
 
     hard: tuple[str, ...] = ()
@@ -45,7 +86,7 @@ class NonConvergence(RuntimeError):
 
 
 def hard_here(hard: tuple[str, ...]) -> str:
-    """What is hard in a scene, in one clause."""
+    """Advice to make a scene easier, naming what is hard in it."""
     return f"less of what is hard here: {', '.join(hard)}"
 
 
@@ -59,43 +100,24 @@ class _TooFar(_StepFailure):
 
 @dataclass(frozen=True)
 class NewtonSettings:
-    """Tolerances relative to the current contact force and to the node spacing, and limits.
+    """Tolerances of Newton's method.
 
-    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``; what
-    pressures and volumes are apart by may be ``volume`` times as large a share of the pressures
-    (norms over the elements). A force that goes to zero is as good as zero within ``least_scale``
-    tolerances of the largest there was. ``snap_iterations`` are allowed on top when a node is
-    popping round an edge: through an unstable state Newton's method only descends. All attempts at
-    a scheduled step may take ``most_iterations``. Factors are kept within a step while what they
-    leave is within ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations
-    later; and from step to step until the steps that they served have taken ``patience`` iterations
-    beyond the fewest of one, which is what new ones cost, while what answers at once in a step has
-    changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn
-    together, and, once there has been a stroke, one ``spare`` times as wide condensed anew. A push
-    that points farther than ``aside`` (rad) from the vertical is one at the side. An iteration goes
-    only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of
-    its way. ``single``: the tangent is factored in single precision, as the next iteration corrects
-    what that is wrong by; until a step does not converge.
+    Parameters
+    ----------
+    force_tolerance : float
+        Largest out-of-balance force on the nodes, relative to the contact force.
+    gap_tolerance : float
+        Largest wrong gap, penetration or slip of a sticking point, relative to the node spacing.
+    max_iterations : int
+        Iterations of one attempt at a step.
+    single : bool
+        Factor the tangent in single precision, until a step does not converge: the next iteration
+        corrects its error.
     """
 
     force_tolerance: float = 1e-4
-    whole: float = 5e-4
-    volume: float = 10.0
-    least_scale: float = 1e-3
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
-    snap_iterations: int = 60
-    most_iterations: int = 400
-    max_halvings: int = 10
-    energy_share: float = 0.35
-    chord: float = 100.0
-    outlook: float = 2.0
-    patience: int = 4
-    stiffening: float = 0.1
-    aside: float = np.radians(50.0)
-    spare: float = 2.0
-    loose: float = 1.25
-    squeeze: float = 0.25
     single: bool = False
 
 
@@ -155,28 +177,13 @@ class Record:
     passed: tuple[Step, ...] = ()  # outputs since the state before, at which none was found
 
 
-@dataclass(frozen=True)
-class _Past:
-    """A state before a step of ``dt``: displacement (n, 2) m, dilatation (the body's own), contact
-    forces (np,) N/m, depth m.
-    """
+class _State(NamedTuple):
+    """A state to predict the next one from."""
 
-    dt: float
-    u: np.ndarray
-    pressed: np.ndarray
-    force: np.ndarray
-    depth: float
-
-    def plus(self, weights, others):
-        """Linear combination of this state and others."""
-        states, parts = [self, *others], ("u", "pressed", "force", "depth")
-        return _Past(
-            self.dt,
-            *(
-                sum(w * getattr(s, part) for w, s in zip(weights, states, strict=True))
-                for part in parts
-            ),
-        )
+    u: np.ndarray  # (n, 2) m
+    pressed: np.ndarray | float  # what the body has besides: its dilatation
+    force: np.ndarray  # (np,) N/m
+    depth: float  # m
 
 
 def first_touch(skin: np.ndarray, profile) -> float:
@@ -217,65 +224,44 @@ class QuasiStatic:
         external=None,
         friction=None,
     ):
-        self.body, self.skin, self.profile = body, skin, profile
+        self.body, self.skin, self.profile, self.observers = body, skin, profile, observers
         self.settings = settings or NewtonSettings()
         self._single = self.settings.single
-        self.observers = observers
-        self.external = external
         self.points = body.space.points
+        self.external = np.zeros_like(body.u) if external is None else external
         stiffest = np.zeros(len(self.points))
         np.maximum.at(
             stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1])
         )
-        along, across = body.space.equation[skin.nodes[0]]
-        mirrored = along < 0 <= across and abs(self.points[skin.nodes[0], 0]) < 1e-9 * np.ptp(
-            self.points[:, 0]
-        )
+        (along, across), x = body.space.equation[skin.nodes[0]], self.points[:, 0]
+        mirrored = along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x)
+        stiffest = stiffest[skin.edges].min(axis=1)
         self.places = ContactPoints.on(
-            self.points,
-            skin.nodes,
-            skin.edges,
-            stiffest[skin.edges].min(axis=1),
-            bool(mirrored),
-            profile.convexity,
+            self.points, skin.nodes, skin.edges, stiffest, bool(mirrored), profile.convexity
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
-            from fingerpad.mechanics.valleys import Valleys
-
-            self._valleys, places = (
-                Valleys(profile, places, skin.spacing / PER_NODE, friction or 0.0),
-                2 * places,
-            )
-        self.contact_force = np.zeros(places)
-        self.active = np.zeros(places, bool)
-        self.depth = self.distance = 0.0
-        self.time = 0.0
+            reach = skin.spacing / PER_NODE
+            self._valleys = Valleys(profile, places, reach, friction or 0.0)
+            places = 2 * places
+        self.contact_force, self.active = np.zeros(places), np.zeros(places, bool)
+        self.depth = self.distance = self.time = 0.0
         self.work = self._gross = self._missing = self.force = self._tangential = 0.0
         self._most_force = self._most_work = self._pressed = 0.0
         self._energies = (0.0, 0.0, 0.0)
-        self.friction = None
-        if friction is not None:
-            from fingerpad.mechanics.friction import Coulomb
-
-            self.friction = Coulomb(friction, places)
-        self._factors = self._flexible = self._stiffness = self._found = self._nodal = (
-            self._touched
-        ) = None
+        self.friction = None if friction is None else Coulomb(friction, places)
+        self._factors = self._flexible = self._stiffness = self._found = None
+        self._nodal = self._touched = None
         self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
         self._reach_what_touches()
         self._unloaded = body.save()
-        self._past: list[_Past] = []
+        self._past: list[tuple[float, _State]] = []  # before the last steps, with their sizes
         self._touches: list[Touch] = []  # the last two states'
         self._quadratic = False
-        self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
-        self.wavered = (
-            0  # attempts that ended going to and fro between states that are nearly in equilibrium
-        )
-
-    # -- geometry ---------------------------------------------------------------------------------------------------
+        self.total_iterations = self.factorisations = self._spent = 0
+        self.wavered = 0  # attempts that ended wavering between states nearly in equilibrium
 
     def _set_zone(self, first, last):
         """Condense onto the points of the skin from ``first`` to before ``last``."""
@@ -283,19 +269,15 @@ class QuasiStatic:
         nodes, shape = self.places.shape(self._outer)
         softness = self.places.soft(self._outer), self.places.soft(self._outer, odd=True)
         self._wide = Zone(nodes, self.body.space.equation, shape, *softness)
-        self.solver, self._schur = (
-            condensation(self.body.space.pattern, self._wide.condensed, self._single),
-            None,
-        )
+        self.solver = condensation(self.body.space.pattern, self._wide.condensed, self._single)
+        self._schur = None
         self._narrow(first, last)
 
     def _narrow(self, first, last):
         """Let contact be solved for on some points of those that are condensed onto."""
         first, last = max(first, self._outer.start), min(last, self._outer.stop)
-        self._range = self.places.whole(first, last)
-        self.zone = self._wide.part(
-            slice(self._range.start - self._outer.start, self._range.stop - self._outer.start)
-        )
+        self._range, begin = self.places.whole(first, last), self._outer.start
+        self.zone = self._wide.part(slice(self._range.start - begin, self._range.stop - begin))
         self._narrowed = Narrowed(self.solver, self.zone.condensed)
         if self._schur is not None:
             self._take(self._schur)
@@ -351,10 +333,10 @@ class QuasiStatic:
         on = np.flatnonzero(self._touching())
         if len(on):
             first, last = self._round(on, 24, 4)
-            if self.distance and len(self._wide) > self.settings.spare * (last - first):
+            if self.distance and len(self._wide) > CONDENSED_WIDTH * (last - first):
                 self._set_zone(first, last)
             first, last = self._round(on, 16, 8)
-            if len(self.zone) > self.settings.loose * (last - first):
+            if len(self.zone) > ZONE_WIDTH * (last - first):
                 self._narrow(first, last)
 
     def _zone_is_tight(self, margin=6):
@@ -373,37 +355,31 @@ class QuasiStatic:
 
     def _position(self, which):
         """(k, 2) m, of some points of the skin in the profile's frame."""
-        return self.places.at(self.points + self.body.u, which) - np.array(
-            [-self.distance, self.height - self.depth]
-        )
+        origin = np.array([-self.distance, self.height - self.depth])
+        return self.places.at(self.points + self.body.u, which) - origin
 
     def _rows(self) -> Rows:
         """The constraints of the zone, worked out once where the body and the profile are."""
         where = self.zone, self.body.u, self.height, self.depth, self.distance
-        if self._found is None or not all(
-            a is b for a, b in zip(where, self._found[0], strict=True)
-        ):
-            zone, points = self.zone, self._position(self._range)
-            single = self.profile.evaluate(points)
-            if self._valleys is None:
-                rows = Rows(zone, self._range, None, *single)
-            else:
-                kept = [self.contact_force, self.active]
-                kept += [] if self.friction is None else self.friction.kept
-                rows = self._valleys.rows(zone, self._range, points, single, kept)
-            self._found = where, rows
-        return self._found[1]
+        if self._found and all(a is b for a, b in zip(where, self._found[0], strict=True)):
+            return self._found[1]
+        points = self._position(self._range)
+        single = self.profile.evaluate(points)
+        if self._valleys is None:
+            rows = Rows(self.zone, self._range, None, *single)
+        else:
+            kept = [self.contact_force, self.active, *(self.friction.kept if self.friction else ())]
+            rows = self._valleys.rows(self.zone, self._range, points, single, kept)
+        self._found = where, rows
+        return rows
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
         skin = np.concatenate([self.points[self.skin.nodes], self.places.at(self.points)])
         height = first_touch(skin + np.array([self.distance, 0.0]), self.profile)
         if np.isnan(height):
-            raise NonConvergence(
-                self.time,
-                f"the stimulus left the pad at {self.distance * 1e3:.3g} mm",
-                "a shorter way",
-            )
+            reason = f"the stimulus left the pad at {self.distance * 1e3:.3g} mm"
+            raise NonConvergence(self.time, reason, "a shorter way")
         return height
 
     def touching_depth(self) -> float:
@@ -412,32 +388,21 @@ class QuasiStatic:
         """
         return self.height - self._first_touch()
 
-    # -- one step ---------------------------------------------------------------------------------------------------
-
     def save(self):
         """The state to come back to: body, contact forces, active nodes, depth, distance,
         friction.
         """
+        contact = self.contact_force.copy(), self.active.copy()
         friction = self.friction and self.friction.save()
-        return (
-            self.body.save(),
-            self.contact_force.copy(),
-            self.active.copy(),
-            self.depth,
-            self.distance,
-            friction,
-        )
+        return self.body.save(), contact, self.depth, self.distance, friction
 
     def restore(self, state):
         """Come back to a saved state."""
-        self.body.restore(state[0])
-        self.contact_force, self.active, self.depth, self.distance = (
-            state[1].copy(),
-            state[2].copy(),
-            *state[3:5],
-        )
-        if self.friction is not None:
-            self.friction.restore(state[5])
+        body, contact, self.depth, self.distance, friction = state
+        self.body.restore(body)
+        self.contact_force, self.active = (values.copy() for values in contact)
+        if self.friction:
+            self.friction.restore(friction)
         self._factors = None
 
     def _start_again(self, distance):
@@ -448,15 +413,14 @@ class QuasiStatic:
         self.contact_force[:], self.active[:] = 0, False
         self.distance = distance
         self.depth = self.touching_depth()
-        if self.friction is not None:
+        if self.friction:
             self.friction.release()
         for observe in self.observers:
             observe(self.body, STEADY)
         self.force = self._tangential = 0.0
         # what was put in has come out again: the balance goes on from here
-        self.work = self._gross = self._most_work = (
-            0.0 if self.friction is None else self.friction.dissipated
-        )
+        dissipated = self.friction.dissipated if self.friction else 0.0
+        self.work = self._gross = self._most_work = dissipated
         self._energies = (0.0, 0.0, 0.0)
         self._factors = self._stiffness = None
         self._past.clear()
@@ -474,7 +438,7 @@ class QuasiStatic:
             iteration += 1
             self._spent += 1
             if self._softened:
-                limit = settings.max_iterations + settings.snap_iterations
+                limit = settings.max_iterations + SNAP_ITERATIONS
             if self._zone_is_tight():
                 self._grow_zone()
                 keep = keep and self._factors_fit()
@@ -488,16 +452,15 @@ class QuasiStatic:
                 self._served.append(iteration)
                 if (
                     self._softened
-                    or sum(self._served) - len(self._served) * min(self._served)
-                    >= settings.patience
+                    or sum(self._served) - len(self._served) * min(self._served) >= REUSE_PATIENCE
                 ):
                     self._factors = None
                 return iteration, residual
             if guessed and residual > before:
                 raise _StepFailure("the state that was guessed is a bad one")
-            ahead = residual * (residual / before) ** settings.outlook
+            ahead = residual * (residual / before) ** REUSE_AHEAD
             keep = (
-                residual <= settings.chord
+                residual <= REUSE_BELOW
                 and ahead <= 1.0
                 and not self._softened
                 and self._factors_fit()
@@ -510,20 +473,17 @@ class QuasiStatic:
         """Are there factors of this zone, and of a step in which as much of the stress answers at
         once?
         """
-        return (
-            self._factors is not None
-            and self._factors[0] is self.solver
-            and abs(self.body.factor - self._factors[1])
-            <= self.settings.stiffening * self.body.factor
-        )
+        if self._factors is None or self._factors[0] is not self.solver:
+            return False
+        now = self.body.factor
+        return abs(now - self._factors[1]) <= REUSE_FACTOR_CHANGE * now
 
     def iterate(self, control, target, reuse=False):
         """One Newton iteration; returns the residual over its tolerance.
 
         ``reuse``: with the factors of the one before, in the same zone.
         """
-        body, settings = self.body, self.settings
-        space = body.space
+        body, space = self.body, self.body.space
         if reuse:
             internal = body.against(self._internal)
         else:
@@ -533,118 +493,98 @@ class QuasiStatic:
                 raise _StepFailure("an element has turned inside out")
             self.factorisations += 1
             self._factors, self._served = (self.solver, body.factor), []
-        load = -internal if self.external is None else self.external - internal
-        rows, schur, reduced = (
-            self._rows(),
-            self._narrowed.schur,
-            self._narrowed.forward(space.to_equations(load)),
-        )
+        rows, schur = self._rows(), self._narrowed.schur
+        reduced = self._narrowed.forward(space.to_equations(self.external - internal))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        known = (
-            schur,
-            reduced,
-            rows.gap,
-            rows.gradient,
-            rows.curvature,
-            self.contact_force[rows.place],
-            self.active[rows.place],
-        )
         # the geometric term of the gaps is part of the tangent, and kept as long as the rest of it
-        same = (
-            self._flexible is not None
-            and self._flexible[0] is rows.zone
-            and self._flexible[1] is schur
-        )
-        goal["flexible"] = self._flexible[2] if same else None
+        zone, tangent, flexible = self._flexible or (None, None, None)
+        goal["flexible"] = flexible if zone is rows.zone and tangent is schur else None
+        known = schur, reduced, self.contact_force[rows.place], self.active[rows.place]
         if self.friction is None:
-            step = solve_contact(rows.zone, *known, **goal)
+            step = solve_contact(rows, *known, **goal)
         else:
-            step = self.friction.solve(
-                rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal
-            )
+            step = self.friction.solve(rows, *known, self._motion(rows.zone), **goal)
         self._flexible = None if step.softened else (rows.zone, schur, step.flexible)
         self._softened |= step.softened
         self._stiff = step.stiffness
         du = space.to_nodes(self._narrowed.backward(step.condensed_displacement))
-        u, depth = body.u, self.depth
-        share, least = 1.0, max(_FOLDS, settings.squeeze * body.smallest_jacobian)
+        share = self._go(du)
+        self.depth += share * step.depth_change
+        for values, new in ((self.contact_force, step.force), (self.active, step.active)):
+            values[:] = 0
+            values[rows.place] = new
+        if self.friction:
+            self.friction.accept(rows.place, step)
+        residual = self._residual(step.force.sum(), target if control == "force" else 0.0)
+        return residual if share == 1.0 else max(residual, 2.0)
+
+    def _go(self, du):
+        """Move the body by ``du`` (n, 2) m, or by the share of it, which is returned, that keeps
+        every element from folding.
+        """
+        body, u, share = self.body, self.body.u, 1.0
+        least = max(MIN_DET_F, DET_F_SHARE * body.smallest_jacobian)
         while True:
             body.advance(du, share)
-            internal = body.internal_force()
+            self._internal = body.internal_force()
             if body.smallest_jacobian > least or body.geometrically_linear:
-                break
+                return share
             share /= 2
-            least = _FOLDS if share < 0.2 else least
+            least = MIN_DET_F if share < 0.2 else least
             if share < 0.05:
                 raise _StepFailure("an element would turn inside out")
             body.displace(u)
-        self._internal = internal
-        self.depth = depth + share * step.depth_change
-        self.contact_force[:] = 0
-        self.active[:] = False
-        self.contact_force[rows.place], self.active[rows.place] = step.force, step.active
-        if self.friction is not None:
-            self.friction.accept(rows.place, step)
-        rows, stuck = self._rows(), 0.0
+
+    def _residual(self, pressing, force):
+        """Largest of all errors of the present state over their tolerances.
+
+        ``pressing``: N/m, sum of the contact forces. ``force``: N/m, asked for; 0 if a depth is.
+        """
+        body, settings, rows, stuck = self.body, self.settings, self._rows(), 0.0
         active = self.active[rows.place]
-        if self.friction is not None:
-            stuck = self.friction.creep(
-                rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness_along
-            )
+        if self.friction:
+            motion, softness = self._motion(rows.zone), rows.zone.softness_along
+            stuck = self.friction.creep(rows.place, active, rows.gradient, motion, softness)
         push, _ = self._forces()
-        unbalanced = -internal if self.external is None else self.external - internal
+        unbalanced = self.external - self._internal
         unbalanced[self.zone.nodes] += self.zone.shape.T @ push
-        scale = max(
-            step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0
-        )
-        scale = max(scale, settings.least_scale * self._most_force)
+        scale = max(pressing, np.abs(self.external).sum(), LEAST_SCALE * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
-            scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
-        unbalanced[space.fixed] = 0.0
-        equilibrium, whole = (
-            np.linalg.norm(unbalanced) / scale,
-            np.linalg.norm(unbalanced.sum(axis=0)) / scale,
-        )
+            scale = np.abs(self._internal).sum() + 1e-30
+        unbalanced[body.space.fixed] = 0.0
+        equilibrium = np.linalg.norm(unbalanced) / scale
+        whole = np.linalg.norm(unbalanced.sum(axis=0)) / scale
         gap = rows.closing(self.contact_force[rows.place])
         opening = np.abs(gap[active]).max(initial=0.0)
         penetration = max(0.0, -gap.min(initial=0.0))
-        balance = 0.0
-        if control == "force" and target > 0:
-            balance = abs(target + push[:, 1].sum()) / target
+        balance = abs(force + push[:, 1].sum()) / force if force > 0 else 0.0
         amiss, pressed = body.volume_amiss()
         self._pressed = max(self._pressed, pressed)
-        volume = amiss / max(pressed, settings.least_scale * self._pressed, 1e-300)
-        residual = max(
+        volume = amiss / max(pressed, LEAST_SCALE * self._pressed, 1e-300)
+        return max(
             equilibrium / settings.force_tolerance,
-            whole / settings.whole,
+            whole / SUM_TOLERANCE,
             balance / settings.force_tolerance,
-            volume / (settings.volume * settings.force_tolerance),
+            volume / (VOLUME_TOLERANCE * settings.force_tolerance),
             max(opening, penetration, stuck) / (settings.gap_tolerance * self.skin.spacing),
         )
-        return residual if share == 1.0 else max(residual, 2.0)
 
     def _motion(self, zone):
         """(nz, 2) m: how far the points of a zone have moved over the profile since the step
         began.
         """
         u, depth, distance = self._begin
-        return zone.shape @ (self.body.u - u)[zone.nodes] + np.array(
-            [self.distance - distance, self.depth - depth]
-        )
+        way = np.array([self.distance - distance, self.depth - depth])
+        return zone.shape @ (self.body.u - u)[zone.nodes] + way
 
     def _touches_elsewhere(self):
         """Does skin outside the zone penetrate the profile? Then the zone has grown to it."""
-        outside = np.ones(len(self.places), bool)
-        outside[self._range] = False
-        outside = np.flatnonzero(outside)
-        if not len(outside):
-            return False
+        outside = np.delete(np.arange(len(self.places)), self._range)
         gap = self.profile.evaluate(self._position(outside))[0]
         deep = outside[gap < -self.settings.gap_tolerance * self.skin.spacing]
-        if not len(deep):
-            return False
-        self._widen_to(deep)
-        return True
+        if len(deep):
+            self._widen_to(deep)
+        return len(deep) > 0
 
     def _forces(self):
         """Force of the profile on the zone's points (nz, 2) N/m, and the frictional part of it
@@ -664,12 +604,10 @@ class QuasiStatic:
         Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where
         nodes jump over edges, adds up.
         """
-        if (
-            self.external is not None
-        ):  # dead loads, put on at once, do twice the work that is stored
+        if self.external.any():  # dead loads, put on at once, do twice the work that is stored
             return
         change = energies[0] + energies[2] - self._energies[0] - self._energies[2] + lost
-        share = self.settings.energy_share
+        share = ENERGY_SHARE
         margin = share * (abs(work) + abs(change)) + 0.02 * abs(self.work)
         missing = self._missing + (work - change if moved else 0.0)
         if abs(work - change) > margin or abs(missing) > share * (self._gross + abs(work)):
@@ -698,19 +636,20 @@ class QuasiStatic:
             way = np.sign(way) * max(abs(way) - clearance, 0.0)
             power = slope * abs(way) / most if slope and most else 1.0
             return most * way / (1 + max(power, 0.0))
-        return trapezoidal - (
-            0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness)
-        )
+        if self._stiffness is None:
+            return trapezoidal
+        return trapezoidal - way**2 / 12 * (stiffness - self._stiffness)
 
     def _advance(self, dt, control, target, distance, predict, good=None):
         """One substep with predictor, check and commit. ``good``: asked of the contact that was
         found, before it is accepted.
         """
-        state = self.save()
+        saved = self.save()
         self._begin = self.body.u, self.depth, self.distance
+        begin_depth, begin_distance = self._begin[1:]
         # a steady stroke takes no time: its steps are as long as their way
-        size = dt if dt < STEADY else abs(distance - self.distance) or dt
-        body, past = self.body, self._now(size)
+        size = dt if dt < STEADY else abs(distance - begin_distance) or dt
+        body, past = self.body, self._now()
         try:
             clearance = 0.0 if self.force else self._clearance()
             self.distance = distance
@@ -724,72 +663,65 @@ class QuasiStatic:
                 self.contact_force, self.depth = np.maximum(guess.force, 0), guess.depth
             iterations, residual = self._attempt(control, target, bool(guesses))
             if guesses:
-                self._quadratic = (
-                    np.argmin(
-                        [np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]
-                    )
-                    > 0
-                )
+                nodes = self.zone.nodes
+                off = [np.linalg.norm((body.u - guess.u)[nodes]) for guess in guesses]
+                self._quadratic = np.argmin(off) > 0
             push, pull = self._forces()
-            tangential, force = 0.0 - push.sum(0)
+            tangential, force = map(float, 0.0 - push.sum(0))
             if force < -1e-9 * self.contact_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
             if good is not None and not good():
                 raise _TooFar
-            self.body.commit()
-            stiffness = self._stiff if distance == state[4] else None
+            body.commit()
+            moved = distance != begin_distance
+            stiffness = None if moved else self._stiff
             clearance = clearance if force else self._clearance()
-            work = self._pressing_work(force, self.depth - state[3], stiffness, clearance)
-            work += 0.5 * (self._tangential + tangential) * (distance - state[4])
-            lost = (
-                self.friction.commit(self._range, pull, self._motion(self.zone))
-                if self.friction
-                else 0.0
-            )
-            network, *others = self.body.energies()
-            rows, pressing = self._rows(), self.contact_force[self._rows().place]
-            energies = (
-                network + 0.5 * float(pressing @ (rows.closing(pressing) - rows.gap)),
-                *others,
-            )
-            self._check_energy(work, energies, lost, distance != state[4])
+            work = self._pressing_work(force, self.depth - begin_depth, stiffness, clearance)
+            work += 0.5 * (self._tangential + tangential) * (distance - begin_distance)
+            lost = 0.0
+            if self.friction:
+                lost = self.friction.commit(self._range, pull, self._motion(self.zone))
+            rows = self._rows()
+            pressing = self.contact_force[rows.place]
+            network, *others = body.energies()
+            smoothing = 0.5 * float(pressing @ (rows.closing(pressing) - rows.gap))
+            energies = (network + smoothing, *others)
+            self._check_energy(work, energies, lost, moved)
         except _StepFailure:
-            self.restore(state)
+            self.restore(saved)
             raise
         for observe in self.observers:
-            observe(self.body, dt)
-        self.force, self._tangential, self._stiffness = float(force), float(tangential), stiffness
+            observe(body, dt)
+        self.force, self._tangential, self._stiffness = force, tangential, stiffness
         self.work += float(work)
         self._gross += abs(float(work))
-        self._most_force, self._most_work = (
-            max(self._most_force, self.force),
-            max(self._most_work, abs(self.work)),
-        )
+        self._most_force = max(self._most_force, force)
+        self._most_work = max(self._most_work, abs(self.work))
         self._energies = energies
-        self._past = [past, *self._past[:1]]
+        self._past = [(size, past), *self._past[:1]]
         return iterations, residual
 
-    def _now(self, dt):
-        return _Past(dt, self.body.u, self.body.pressed, self.contact_force, self.depth)
+    def _now(self):
+        return _State(self.body.u, self.body.pressed, self.contact_force, self.depth)
 
     def _predictions(self, dt):
-        """Where the path goes on to in a step of ``dt``: along the straight line through the last
-        two states, and along the parabola through the last three if there are as many.
+        """States after a step of ``dt``: on the straight line through the last two states, and on
+        the parabola through the last three if there are as many.
         """
-        now, found = self._now(dt), []
-        sizes = [past.dt for past in self._past]
+        sizes, states = [size for size, _ in self._past], [self._now(), *(s for _, s in self._past)]
+        weights = []
         if sizes:
             ratio = dt / sizes[0]
-            found.append(now.plus([1 + ratio, -ratio], self._past[:1]))
+            weights.append([1 + ratio, -ratio])
         if len(sizes) > 1:
             one, both = sizes[0], sum(sizes)
-            weights = [
-                (dt + one) * (dt + both) / (one * both),
-                -dt * (dt + both) / (one * sizes[1]),
-                dt * (dt + one) / (both * sizes[1]),
-            ]
-            found.append(now.plus(weights, self._past))
-        return found
+            now = (dt + one) * (dt + both) / (one * both)
+            before = -dt * (dt + both) / (one * sizes[1])
+            weights.append([now, before, dt * (dt + one) / (both * sizes[1])])
+        return [
+            _State(*(sum(map(mul, share, values)) for values in zip(*states, strict=True)))
+            for share in weights
+        ]
 
     def run(
         self,
@@ -802,8 +734,8 @@ class QuasiStatic:
         as many as it takes.
 
         Raises:
-            NonConvergence: a step fails even after ``max_halvings`` halvings or
-            ``most_iterations``; its ``records`` hold what
+            NonConvergence: a step fails even after MAX_HALVINGS halvings or
+            MOST_ITERATIONS iterations; its ``records`` hold what
                 converged.
         """
         records: list[Record] = []
@@ -824,7 +756,6 @@ class QuasiStatic:
             strides.found(step)
             last = step if not halvings else None
             self.total_iterations += iterations
-            self.total_halvings += halvings
             if between:
                 self._touches = [*self._touches[-1:], self._touch()]
             record = self._record(step, iterations, halvings, residual, passed)
@@ -850,19 +781,12 @@ class QuasiStatic:
         # a steady press goes in strides as long as its way: what the last one did is no guide to
         # the next
         pressed = step.dt >= STEADY and step.distance == self.distance
-        smooth = (
-            last is not None
-            and last.leg == step.leg
-            and last.dt > 0
-            and not step.fresh
-            and not pressed
-        )
-        done, size, iterations, halvings = 0.0, 1.0, 0, 0
-        self._spent = 0
-        if not smooth:
+        same_leg = last is not None and last.leg == step.leg and last.dt > 0
+        predict = same_leg and not step.fresh and not pressed
+        done, size, iterations, halvings, self._spent = 0.0, 1.0, 0, 0, 0
+        if not predict:
             self._past.clear()
             self._factors = None
-        predict = smooth
         self._follow()
         while done < 1.0:
             size = min(size, 1.0 - done)
@@ -902,37 +826,30 @@ class QuasiStatic:
 
     def _touch(self):
         rows = self._rows()
-        if self._touched is not None and self._touched[0] is rows:
-            return self._touched[1]
-        force, gradient, length, edges = self._on_nodes()
-        x = (self.points + self.body.u)[self.skin.nodes, 0]
-        push, pull = self._forces()
-        drag, press = push.sum(0)
-        stuck = self.contact_force[self.friction.state == 0].sum() if self.friction else 0.0
-        share = float(stuck / max(self.contact_force.sum(), 1e-300))
-        self._touched = (
-            rows,
-            Touch(
-                x,
-                force / length,
-                edges,
-                self.distance,
-                float(drag / press) if press else 0.0,
-                share,
-            ),
-        )
+        if self._touched is None or self._touched[0] is not rows:
+            force, _, length, edges = self._on_nodes()
+            x = (self.points + self.body.u)[self.skin.nodes, 0]
+            drag, press = self._forces()[0].sum(0)
+            stuck = self.contact_force[self.friction.state == STICK].sum() if self.friction else 0.0
+            share = float(stuck / max(self.contact_force.sum(), 1e-300))
+            drag = float(drag / press) if press else 0.0
+            touch = Touch(x, force / length, edges, self.distance, drag, share)
+            self._touched = rows, touch
         return self._touched[1]
 
     def _give_up_if_vain(self, failure, size, halvings, records):
         """NonConvergence where smaller parts of a step are of no use."""
         aside = bool(records) and self._slips_off(records[-1])
-        spent = self._spent > self.settings.most_iterations
-        if size >= 0.5**self.settings.max_halvings and not spent and not (aside and halvings > 1):
+        spent = self._spent > MOST_ITERATIONS
+        if size >= 0.5**MAX_HALVINGS and not spent and not (aside and halvings > 1):
             return
         where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
         reason, advice = str(failure), self._advice(str(failure))
         if spent:
-            reason = f"{self._spent} Newton iterations did not suffice for a step cut {halvings} times; {reason}"
+            tried = (
+                f"{self._spent} Newton iterations did not suffice for a step cut {halvings} times"
+            )
+            reason = f"{tried}; {reason}"
         if aside:
             way = f"{self.distance * 1e3:.3g} mm"
             reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"
@@ -943,19 +860,17 @@ class QuasiStatic:
         hold it there.
         """
         push = -(record.nodal_force @ record.gradient)
-        return bool(record.distance) and abs(push[0]) > np.tan(self.settings.aside) * push[1]
+        return bool(record.distance) and abs(push[0]) > np.tan(SIDE_ANGLE) * push[1]
 
     def _advice(self, reason):
         spacing = float(np.median(PER_NODE * self.places.spacing[self._range]))
-        about_profile = self.profile.advice(spacing)
-        if about_profile:
+        if about_profile := self.profile.advice(spacing):
             return about_profile
         if "inside out" in reason:
             return FOLDED
-        if "carry the force" in reason:
-            return "depth control, or a profile that stays above the pad"
         if "energy" in reason:
-            return "smaller steps, a finer skin mesh, or a fillet on sharp edges that pass over the skin"
+            fillet = "a fillet on sharp edges that pass over the skin"
+            return f"smaller steps, a finer skin mesh, or {fillet}"
         return "more steps, a finer mesh, or depth instead of force control"
 
     def _on_nodes(self):
@@ -963,61 +878,58 @@ class QuasiStatic:
         contact's edges.
         """
         rows, places, part = self._rows(), self.places, self._range
-        if self._nodal is not None and self._nodal[0] is rows:
+        if self._nodal and self._nodal[0] is rows:
             return self._nodal[1]
         push = np.zeros((len(places), 2))
         push[part] = rows.of_points(self.contact_force[rows.place][:, None] * rows.gradient)
         normal = np.hypot(*push.T)
         nodal, force = places.of_nodes(push), places.of_nodes(normal)
-        gradient = np.divide(
-            nodal, np.hypot(*nodal.T)[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0
-        )
+        size = np.hypot(*nodal.T)[:, None]
+        gradient = np.divide(nodal, size, out=np.zeros_like(nodal), where=force[:, None] > 0)
         position = self.points + self.body.u
         # the linear theory knows no deformed lengths
         length = places.lengths(self.points if self.body.geometrically_linear else position)
         pressure = normal[part] / length[part]
-        mirrored = part.start == 0 and places.mirrored
-        edges = contact_edges(
-            places.at(position, part)[:, 0], pressure, places.spacing[part], mirrored
-        )
+        mirrored, x = part.start == 0 and places.mirrored, places.at(position, part)[:, 0]
+        edges = contact_edges(x, pressure, places.spacing[part], mirrored)
         self._nodal = rows, (force, gradient, places.of_nodes(length), edges)
         return self._nodal[1]
 
     def _record(self, step, iterations, halvings, residual, passed):
         force, gradient, length, edges = self._on_nodes()
-        rows = self._rows()
-        kept = self.contact_force[rows.place]
-        total = max(kept.sum(), 1e-300)
-        slack = np.abs(rows.closing(kept)) * kept
+        rows, friction = self._rows(), self.friction
+        pressing = self.contact_force[rows.place]
+        slack = np.abs(rows.closing(pressing)) * pressing
         network, spring, branch_work = self._energies
-        friction = self.friction
         frictional = friction.dissipated if friction else 0.0
         # a body that is let go gives the work back: there is nothing left to relate an error to
-        balance = abs(self.work - network - branch_work - frictional) / max(
-            abs(self.work), 0.1 * self._most_work, 1e-300
-        )
+        missing = abs(self.work - network - branch_work - frictional)
+        balance = missing / max(abs(self.work), 0.1 * self._most_work, 1e-300)
+        tangential = friction.record(self.active, self.places) if friction else (None, None, None)
         return Record(
-            step.leg,
-            step.time,
-            self.depth,
-            self.force,
-            self._tangential,
-            force,
-            gradient,
-            length,
-            edges,
-            self.body.u.copy(),
-            iterations,
-            halvings,
-            residual * self.settings.force_tolerance,
-            float(slack.sum() / (total * self.skin.spacing)),
-            float(self.body.smallest_jacobian),
-            float(balance) if self.work else 0.0,
-            self.work,
-            self._energies,
-            branch_work - spring,
-            self.distance,
-            frictional,
-            *(friction.record(self.active, self.places) if friction else ()),
+            leg=step.leg,
+            time=step.time,
+            depth=self.depth,
+            distance=self.distance,
+            force=self.force,
+            tangential_force=self._tangential,
+            nodal_force=force,
+            gradient=gradient,
+            length=length,
+            edges=edges,
+            displacement=self.body.u.copy(),
+            tangential=tangential[0],
+            slip=tangential[1],
+            state=tangential[2],
+            iterations=iterations,
+            halvings=halvings,
+            residual=residual * self.settings.force_tolerance,
+            complementarity=float(slack.sum() / max(pressing.sum(), 1e-300) / self.skin.spacing),
+            smallest_jacobian=float(self.body.smallest_jacobian),
+            energy_error=float(balance) if self.work else 0.0,
+            work=self.work,
+            energies=self._energies,
+            dissipated=branch_work - spring,
+            frictional=frictional,
             passed=passed,
         )

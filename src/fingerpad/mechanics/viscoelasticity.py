@@ -3,7 +3,8 @@
 Each branch obeys ``Q' + Q/tau = beta S_iso'``. Over a step in which ``S_iso`` changes linearly the
 solution is exact:
 
-    Q(t + dt) = exp(-dt/tau) Q(t) + beta gamma (S_iso(t + dt) - S_iso(t)),   gamma = (1 - exp(-dt/tau)) / (dt/tau)
+    Q(t + dt) = exp(-dt/tau) Q(t) + beta gamma (S_iso(t + dt) - S_iso(t)),
+    gamma = (1 - exp(-dt/tau)) / (dt/tau)
 
 so the stress answers ``factor = 1 + sum beta gamma`` of the new isochoric stress at once, plus a
 history that is known when the step begins. A body without a Prony series never comes here.

@@ -85,22 +85,31 @@ class MaterialPoints:
         prony = body.prony if self._linear else body.branches and body.branches.prony
         self.branches = Branches(prony, (len(element), 4)) if prony else None
 
-    def _gradient(self, body):
-        return np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
+    def _deformation(self, body):
+        """Deformation gradient (nr, 2, 2), its determinant (nr,), strain (nr, 2, 2) and principal
+        stretches (nr, 2), rising; the linear theory has no more than the strain.
+        """
+        gradient = np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
+        if self._linear:
+            strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
+            f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
+            return f, jac, strain, 1 + np.linalg.eigvalsh(strain)
+        f = np.eye(2) + gradient
+        jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
+        return f, jac, logarithmic_strain(f), np.linalg.svd(f, compute_uv=False)[:, ::-1]
 
     def _isochoric(self, body):
-        if self._linear:
-            gradient = self._gradient(body)
-            strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
-            mean = np.trace(strain, axis1=1, axis2=2) / 3
-            return (
-                2
-                * self.shear[:, None]
-                * np.stack(
-                    [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1
-                )
-            )
-        return isochoric_stress(self.laws, body.u, self.cells, self.grad, self.shear)
+        if not self._linear:
+            return isochoric_stress(self.laws, body.u, self.cells, self.grad, self.shear)
+        strain = self._deformation(body)[2]
+        mean = np.trace(strain, axis1=1, axis2=2) / 3
+        parts = [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean]
+        return 2 * self.shear[:, None] * np.stack(parts, axis=1)
+
+    def _total(self, body):
+        """Long-term isochoric stress (nr, 4) and, with the branches', the total one, Pa."""
+        stress = self._isochoric(body)
+        return stress, stress if self.branches is None else stress + self.branches.q.sum(0)
 
     def __call__(self, body, dt: float) -> None:
         """Follow one converged substep of ``dt`` seconds."""
@@ -117,31 +126,18 @@ class MaterialPoints:
         ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation`` (J - 1 as the
         element projects it).
         """
-        gradient, dilatation = self._gradient(body), self._dilatation(body)
-        stress = self._isochoric(body)
-        branch = (
-            []
-            if self.branches is None
-            else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
-        )
+        dilatation, (stress, total) = self._dilatation(body), self._total(body)
+        f, jac, strain, stretch = self._deformation(body)
+        branches = []
+        if self.branches is not None:
+            branches = list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
-            f, jac, strain = (
-                np.broadcast_to(np.eye(2), gradient.shape),
-                1.0,
-                0.5 * (gradient + gradient.swapaxes(1, 2)),
-            )
             network = deviator_square(stress) / (4 * self.shear)
-            stretch = 1 + np.linalg.eigvalsh(strain)
         else:
-            f = np.eye(2) + gradient
-            jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
             network = isochoric_energy(self.laws, f, self.shear)
-            stretch, strain = np.linalg.svd(f, compute_uv=False)[:, ::-1], logarithmic_strain(f)
         volumetric = 0.5 * self.bulk * dilatation**2
-        found = strain_energies(
-            f, strain, stress, branch, network, self.shear, self.shear_instantaneous, volumetric
-        )
-        total = stress + sum((q for _, q in branch), np.zeros_like(stress))
+        moduli = self.shear, self.shear_instantaneous
+        found = strain_energies(f, strain, stress, branches, network, *moduli, volumetric)
         found |= {
             "compressive_strain": np.maximum(1 - stretch[:, 0], 0),
             "tensile_strain": np.maximum(stretch[:, 1] - 1, 0),
@@ -151,31 +147,19 @@ class MaterialPoints:
         }
         if self.recovery is None:
             return found
-        least = {
-            "hydrostatic_pressure": -np.inf,
-            "dilatation": -np.inf,
-        }  # all others are sizes, which a fit near zero may miss
-        return {
-            name: np.maximum(self.recovery(values), least.get(name, 0.0))
-            for name, values in found.items()
-        }
+        fitted = {name: self.recovery(values) for name, values in found.items()}
+        for name in fitted.keys() - {"hydrostatic_pressure", "dilatation"}:
+            fitted[name] = np.maximum(fitted[name], 0.0)  # a size, which a fit near zero may miss
+        return fitted
 
     def stress_and_strain(self, body) -> dict[str, np.ndarray]:
         """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2:
         stretches less one, rising).
         """
-        gradient = self._gradient(body)
-        if self._linear:
-            f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
-            strains = np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(1, 2)))
-        else:
-            f = np.eye(2) + gradient
-            jac, strains = np.linalg.det(f), np.linalg.svd(f, compute_uv=False)[:, ::-1] - 1
-        total = self._isochoric(body) + (0.0 if self.branches is None else self.branches.q.sum(0))
-        stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[
-            :, None
-        ] * [1, 1, 0, 1]
-        return {"cauchy_stress": stress, "principal_strains": strains}
+        f, jac, _, stretch = self._deformation(body)
+        pressure = (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
+        stress = push_forward(f, self._total(body)[1]) / jac[:, None] + pressure
+        return {"cauchy_stress": stress, "principal_strains": stretch - 1}
 
     def _dilatation(self, body):
         return np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)

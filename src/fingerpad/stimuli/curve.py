@@ -1,11 +1,10 @@
 """Surfaces of straight lines and circular arcs, whose distance is exact."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from fingerpad.machine_code import Loop, sources
+from fingerpad.stimuli.curve_loop import closest
 from fingerpad.stimuli.profile import Profile, Walls
 
 
@@ -229,7 +228,7 @@ class Curve(Profile):
             np.empty(len(points)),
         )
         limits = self.overlap, self.touch
-        _closest(
+        closest(
             points,
             y > height,
             within,
@@ -241,15 +240,6 @@ class Curve(Profile):
             curvature,
         )
         return distance, gradient, curvature
-
-
-def _compiler():
-    from fingerpad.stimuli.curve_loop import closest
-
-    return closest
-
-
-_closest = Loop("closest_on_curve", _compiler, sources(Path(__file__).with_name("curve_loop.py")))
 
 
 def share_of_height(slope: float) -> float:

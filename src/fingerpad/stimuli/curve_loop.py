@@ -1,15 +1,13 @@
-"""The closest point of a curve of lines and arcs, as a compiled loop over points; called through
-machine code that is kept.
-"""
+"""The closest point of a curve of lines and arcs, as a compiled loop over points."""
 
 from math import atan2, cos, hypot, inf, sin
 
 from numba import njit
 
-_JIT = {"error_model": "numpy", "boundscheck": False}
+from fingerpad.compiled import JIT
 
 
-@njit(**_JIT | {"inline": "always"})
+@njit(**JIT | {"inline": "always", "cache": False})
 def _at(x, ends, right):
     """The first of the inner ends at or after ``x``; with ``right`` the first after it."""
     low, high = 1, len(ends) - 1
@@ -22,7 +20,7 @@ def _at(x, ends, right):
     return low - 1
 
 
-@njit(**_JIT)
+@njit(**JIT)
 def closest(points, below, within, ends, pieces, limits, distance, gradient, curvature):
     """Signed distance (n,), its gradient (n, 2) and curvature (n,) at ``points`` (n, 2), into the
     last three.
