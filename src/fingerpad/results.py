@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.processes import threads
 from fingerpad.provenance import code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
-from fingerpad.specimen.near import nearest
 from fingerpad.stimuli.motion import NO_TIME
 
 if TYPE_CHECKING:
@@ -635,7 +635,7 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
     directory, nodes = Path(directory), history.sizes["node"]
     kind = kind_of(history.sizes["element_node"]).meshio
     position, region = history.node_position.values, history.element_region
-    skin = nearest(np.column_stack([history.skin_x, history.skin_y]), position, 1)[:, 0]
+    skin = KDTree(position).query(np.column_stack([history.skin_x, history.skin_y]))[1]
     times = history.snapshot_time.values.tolist()
     paths, parts = [], []
     for k, time in enumerate(times):

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from fingerpad.roots import root
+from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -125,7 +124,7 @@ class PadEstimate:
         top = np.arccos(flat / (flat + radius))
         if excess(top) <= 0:
             return radius
-        angle = root(excess, 0.0, top)
+        angle = brentq(excess, 0.0, top)
         return float(flat * (1 / np.cos(angle) - 1))
 
     def least_piece(

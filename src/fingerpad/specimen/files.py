@@ -17,12 +17,12 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fingerpad.files import is_file, read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.gmsh_worker import GmshError, ask
 from fingerpad.specimen.judge import check_joined, check_skin
-from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import (
     HELD,
     OPTIONAL,
@@ -244,10 +244,10 @@ def _require_joined(path: Path, mesh: PadMesh, pairs: np.ndarray, place) -> None
     their nodes.
     """
     middles = mesh.points[pairs].mean(axis=1)
-    double = twins(middles, _SAME_PLACE * np.ptp(mesh.points[:, 0]))
-    if len(double):
+    double = KDTree(middles).query_pairs(_SAME_PLACE * np.ptp(mesh.points[:, 0]))
+    if double:
         raise MeshError(
-            f"{path}: {2 * len(double)} edges, the first at {place(pairs[double[0, 0]])}, lie twice at the same place; "
+            f"{path}: {2 * len(double)} edges, the first at {place(pairs[min(double)[0]])}, lie twice at the same place; "
             "elements must share their nodes (are the layers joined?)"
         )
 
@@ -272,8 +272,8 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     x = mesh.points[mesh.cells, 0]
     if ((x.min(axis=1) < -near) & (x.max(axis=1) > near)).any():
         return False
-    image = same_place(mesh.points * (-1.0, 1.0), mesh.points, near)
-    if image.min() < 0 or len(np.unique(image)) < len(image):
+    distance, image = KDTree(mesh.points).query(mesh.points * (-1.0, 1.0))
+    if distance.max() > near or len(np.unique(image)) < len(image):
         return False
 
     def same(rows: np.ndarray, labels: np.ndarray) -> bool:

@@ -22,7 +22,7 @@ from pydantic.json_schema import SkipJsonSchema
 from fingerpad.documents import Problem, Strict, nearest
 from fingerpad.fields import Length, Time, listed, quantity
 from fingerpad.files import expanded
-from fingerpad.roots import root
+from scipy.optimize import brentq
 from fingerpad.stimuli.course import Course, read_course
 from fingerpad.tables import TableError
 from fingerpad.units import format_quantity
@@ -639,7 +639,7 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
         return np.full(count, duration / count)
     most = (duration / first) ** (1 / (count - 1))  # or the last step alone were longer
     high = most * (1 + 1e-12) if many else 1 + most
-    ratio = root(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
+    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())
 
