@@ -17,6 +17,7 @@ import pytest
 from fingerpad.cli import main
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen import MeshSize, build_pad_mesh, read_pad_mesh, write_pad
+from fingerpad.specimen.build import _rectangle
 from fingerpad.specimen.gmsh_worker import GmshError, _Worker, ask
 from synthetic import OUTLINE as THESIS
 
@@ -26,9 +27,9 @@ COARSE = MeshSize(skin_edge=1e-3, fine_half_width=2e-3, layer_edge=0.5e-3, growt
 
 
 @pytest.fixture
-def no_cache(tmp_path, monkeypatch):
-    """A user whose cache is empty, so that gmsh has to work."""
-    monkeypatch.setattr("fingerpad.specimen.build.cache_folder", lambda name: None)
+def no_cache():
+    """No mesh is remembered, so that gmsh has to work."""
+    _rectangle.cache_clear()
 
 
 def pad():

@@ -30,10 +30,11 @@ from fingerpad.specimen import (
     skin_chain,
     write_pad,
 )
-from fingerpad.specimen.build import smallest_edge
+from fingerpad.specimen.build import size_of
+from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import below_outline, below_skin
 from fingerpad.specimen.pad import element_edges
-from fingerpad.specimen.quality import jacobians, sample_points
+from fingerpad.specimen.quality import jacobians
 from fingerpad.specimen.ridges import mean_shape, ridge_shape
 
 pytestmark = pytest.mark.unit
@@ -116,8 +117,8 @@ def between(mesh, upper: str, lower: str, reach: float = 5e-3) -> np.ndarray:
 
 
 def areas(mesh) -> dict[str, float]:
-    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 324.0
-    area = np.linalg.det(jacobians(mesh, sample_points(mesh.element)[1])) @ weights
+    points, weights = KINDS[mesh.element].rule(5)
+    area = np.linalg.det(jacobians(mesh, points)) @ weights
     return dict(
         zip(
             mesh.regions,
@@ -339,10 +340,9 @@ def test_ridges_do_not_blow_up_the_mesh(meshes):
 
 def test_counting_is_building(case):
     given_ridges, corneum, mesh = case
-    assert count_nodes(OUTLINE, SIZE, given_ridges, corneum) == len(mesh.points)
-    assert (
-        smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == quality_of(mesh)["smallest_edge_m"]
-    )
+    quality = quality_of(mesh)
+    size = quality["nodes"], quality["smallest_edge_m"]
+    assert size_of(OUTLINE, SIZE, given_ridges, corneum) == size
 
 
 def test_ridges_of_no_height_are_the_plain_pad():
