@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
+from pydantic_core import core_schema
 
 from fingerpad.documents import Problem
 from fingerpad.units import (
@@ -120,6 +122,33 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
         raise Problem(
             getattr(cause, "problem", "is not valid"), getattr(cause, "allowed", ""), (key,)
         ) from None
+
+
+class OneOf:
+    """Annotation of a field that holds one of several models.
+
+    Parameters
+    ----------
+    choose : callable
+        Value -> the model it is, or that it describes; raises `Problem` if it is none.
+    kinds : mapping of str to model
+        All of them, for the schema; those that join later are read too.
+    """
+
+    def __init__(self, choose: Callable[[Any], type], kinds: Mapping[str, type]) -> None:
+        self.choose, self.kinds = choose, kinds
+
+    def _read(self, value: Any, info: ValidationInfo) -> Any:
+        return self.choose(value).model_validate(value, context=info.context)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: Any
+    ) -> dict[str, Any]:
+        kinds = [kind.__pydantic_core_schema__ for kind in self.kinds.values()]
+        return handler(core_schema.union_schema(kinds))
 
 
 def listed(value: Any) -> Any:

@@ -35,7 +35,6 @@ from fingerpad.scenes.specimen import (
     source_of,
 )
 from fingerpad.stimuli.motion import (
-    LEGS,
     MAXIMUM_STEPS,
     Hold,
     Lift,
@@ -87,8 +86,7 @@ MAXIMUM_SNAPSHOTS = 1000
 
 
 _TAGS = frozenset(
-    f"<{key}>"
-    for key in (*LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
+    {"<level>", "<tolerance>", "<discretisation>", "<times>", "<every>", "<finger>", "<own>"}
 )
 
 

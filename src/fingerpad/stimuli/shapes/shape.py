@@ -9,10 +9,8 @@ from functools import cached_property
 from inspect import get_annotations
 from typing import Annotated, Any
 
-from pydantic import ValidationInfo
-from pydantic_core import core_schema
-
 from fingerpad.documents import HIDE, Problem, Strict, nearest
+from fingerpad.fields import OneOf
 from fingerpad.stimuli.curve import Curve
 from fingerpad.stimuli.profile import Profile
 
@@ -93,44 +91,33 @@ class CurvedShape(Shape):
     known = property(lambda self: self.curve.known)
 
 
-def shape_from(data: Mapping[str, Any], context: Any = None) -> Shape:
-    """The shape that `data` describes: SI numbers, or with the `context` of a document text with
-    units.
-
-    Raises:
-        Problem, ValidationError: it is none, or one of its values is wrong.
-    """
-    if "shape" not in data:
-        raise Problem("is missing", ", ".join(SHAPES), ("shape",), HIDE)
-    name = data["shape"]
-    if not isinstance(name, str) or name not in SHAPES:
-        raise Problem(f"is not a known shape{nearest(name, SHAPES)}", ", ".join(SHAPES), ("shape",))
-    return SHAPES[name].model_validate(dict(data), context=context)
-
-
-def _read(value: Any, info: ValidationInfo) -> Shape:
+def _shape_of(value: Any) -> type[Shape]:
+    """The kind of a shape, or of the mapping that describes one."""
     if isinstance(value, Shape):
-        return value
+        return type(value)
     if not isinstance(value, Mapping):
         raise Problem(
             "is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}'
         )
-    return shape_from(value, info.context)
+    if "shape" not in value:
+        raise Problem("is missing", ", ".join(SHAPES), ("shape",), HIDE)
+    name = value["shape"]
+    if not isinstance(name, str) or name not in SHAPES:
+        raise Problem(f"is not a known shape{nearest(name, SHAPES)}", ", ".join(SHAPES), ("shape",))
+    return SHAPES[name]
 
 
-class _AnyShape:
-    """Any of the registered shapes, those that register later included."""
+def shape_from(data: Mapping[str, Any], context: Any = None) -> Shape:
+    """The shape that `data` describes: SI numbers, or with the `context` of a document text with
+    units.
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.with_info_plain_validator_function(_read)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: Any
-    ) -> dict[str, Any]:
-        return handler(
-            core_schema.union_schema([shape.__pydantic_core_schema__ for shape in SHAPES.values()])
-        )
+    Raises
+    ------
+    Problem, ValidationError
+        It is none, or one of its values is wrong.
+    """
+    return _shape_of(data).model_validate(data, context=context)
 
 
-Stimulus = Annotated[Shape, _AnyShape()]
+Stimulus = Annotated[Shape, OneOf(_shape_of, SHAPES)]
 """Field type: what touches the pad."""
