@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
@@ -116,7 +117,7 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
     `Problem` if it is wrong.
     """
     try:
-        return TypeAdapter(kind).validate_python(value, context=context)
+        return _adapter(kind).validate_python(value, context=context)
     except ValidationError as error:
         cause = error.errors()[0].get("ctx", {}).get("error")
         raise Problem(
@@ -124,22 +125,27 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
         ) from None
 
 
+@cache
+def _adapter(kind: Any) -> TypeAdapter:
+    return TypeAdapter(kind)
+
+
 class OneOf:
-    """Annotation of a field that holds one of several models.
+    """Annotation of a field that holds a value of one of several types.
 
     Parameters
     ----------
     choose : callable
-        Value -> the model it is, or that it describes; raises `Problem` if it is none.
-    kinds : mapping of str to model
-        All of them, for the schema; those that join later are read too.
+        Value -> the type that it is of, or that it describes; raises `Problem` if it is of none.
+    kinds : mapping
+        Name -> type, for the schema; types that join later are read too.
     """
 
-    def __init__(self, choose: Callable[[Any], type], kinds: Mapping[str, type]) -> None:
+    def __init__(self, choose: Callable[[Any], Any], kinds: Mapping[str, Any]) -> None:
         self.choose, self.kinds = choose, kinds
 
     def _read(self, value: Any, info: ValidationInfo) -> Any:
-        return self.choose(value).model_validate(value, context=info.context)
+        return _adapter(self.choose(value)).validate_python(value, context=info.context)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(self._read)
@@ -147,8 +153,31 @@ class OneOf:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: Any
     ) -> dict[str, Any]:
-        kinds = [kind.__pydantic_core_schema__ for kind in self.kinds.values()]
+        kinds = [_adapter(kind).core_schema for kind in self.kinds.values()]
         return handler(core_schema.union_schema(kinds))
+
+
+def published_schema(schema: dict[str, Any], title: str) -> dict[str, Any]:
+    """A JSON schema as it is written to a file: without generated titles, nulls and SI defaults,
+    which documents lack; a stimulus's shape is required.
+    """
+    dialect = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": dialect, "title": title, **_tidy(schema)}
+
+
+def _tidy(schema: Any) -> Any:
+    if isinstance(schema, list):
+        return [_tidy(item) for item in schema if item != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    tidy = {
+        key: _tidy(value)
+        for key, value in schema.items()
+        if key != "title" and (key != "default" or isinstance(value, str))
+    }
+    if "const" in tidy.get("properties", {}).get("shape", {}):
+        tidy["required"] = ["shape", *tidy.get("required", [])]
+    return tidy
 
 
 def listed(value: Any) -> Any:

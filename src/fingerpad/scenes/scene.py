@@ -14,11 +14,22 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest
-from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
+from fingerpad.fields import (
+    SI,
+    Length,
+    OneOf,
+    SignedLength,
+    Time,
+    listed,
+    number,
+    published_schema,
+    quantity,
+    whole,
+)
 from fingerpad.scenes.effects import EFFECTS
 from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
@@ -81,13 +92,7 @@ __all__ = [
     "specimen_json_schema",
 ]
 
-LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_SNAPSHOTS = 1000
-
-
-_TAGS = frozenset(
-    {"<level>", "<tolerance>", "<discretisation>", "<times>", "<every>", "<finger>", "<own>"}
-)
 
 
 # --- outputs, accuracy, effects -------------------------------------------------------------------
@@ -142,9 +147,10 @@ class Outputs(Strict):
     receptors: Receptors
     """Where strain energy is recorded."""
     snapshots: Annotated[
-        Annotated[_Times, Tag("<times>")] | Annotated[Every, Tag("<every>")],
-        Discriminator(
-            lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"
+        tuple[float, ...] | Every,
+        OneOf(
+            lambda value: Every if isinstance(value, (Mapping, Every)) else _Times,
+            {"times": _Times, "every": Every},
         ),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
@@ -204,33 +210,30 @@ class Discretisation(Strict):
 
 
 Level = Literal["draft", "thesis", "fine"]
-_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of tolerance and once, or element, skin_edge, steps"
+LEVELS = get_args(Level)
+_Tolerance = number("a tolerance above 0 and below 1", 0.0, 1.0)
+_ACCURACY = (
+    f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, "
+    "or a mapping of tolerance and once, or element, skin_edge, steps"
+)
 
 
-def _check_accuracy(value: Any) -> Any:
-    if isinstance(value, str) and value not in LEVELS:
-        try:
-            return parse_number(value)
-        except QuantityError:
-            raise Problem("is not a known accuracy", _ACCURACY) from None
-    if isinstance(value, bool) or not isinstance(value, (str, int, float, Mapping, Discretisation)):
+def _accuracy_of(value: Any) -> Any:
+    if isinstance(value, (Mapping, Discretisation)):
+        return Discretisation
+    if isinstance(value, str) and value in LEVELS:
+        return Level
+    try:
+        number = parse_number(value) if isinstance(value, str) else value
+    except QuantityError:
+        number = None
+    if isinstance(number, bool) or not isinstance(number, (int, float)):
         raise Problem("is not a known accuracy", _ACCURACY)
-    return value
+    return _Tolerance
 
 
-def _accuracy_tag(value: Any) -> str:
-    if isinstance(value, str):
-        return "<level>"
-    return "<tolerance>" if isinstance(value, (int, float)) else "<discretisation>"
-
-
-Accuracy = Annotated[
-    Annotated[Level, Tag("<level>")]
-    | Annotated[number("a tolerance above 0 and below 1", 0.0, 1.0), Tag("<tolerance>")]
-    | Annotated[Discretisation, Tag("<discretisation>")],
-    Discriminator(_accuracy_tag),
-    BeforeValidator(_check_accuracy),
-]
+_KINDS = {"level": Level, "tolerance": _Tolerance, "discretisation": Discretisation}
+Accuracy = Annotated[Level | float | Discretisation, OneOf(_accuracy_of, _KINDS)]
 
 
 def _read_effects(value: Any) -> dict[str, bool]:
@@ -417,7 +420,7 @@ class Scene(Strict):
         try:
             return type(self).model_validate(data)
         except ValidationError as error:
-            raise explain(error, self.name, data, _TAGS) from None
+            raise explain(error, self.name, data) from None
 
     def with_accuracy(self, accuracy: Any) -> Scene:
         """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or
@@ -464,7 +467,7 @@ def scene_of_record(data: Mapping[str, Any]) -> Scene:
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
-        raise explain(error, data.get("name", "scene"), data, _TAGS) from None
+        raise explain(error, data.get("name", "scene"), data) from None
 
 
 def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> Any:
@@ -544,7 +547,7 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
     try:
         return Scene.model_validate(written.document, context=Source(path, written.tags))
     except ValidationError as error:
-        raise explain(error, shown, written.document, _TAGS) from None
+        raise explain(error, shown, written.document) from None
 
 
 def scene_json_schema() -> dict[str, Any]:
@@ -583,35 +586,11 @@ def scene_json_schema() -> dict[str, Any]:
         {"required": keys} for keys in (["stimulus", "motion"], ["extends"], ["over"])
     ]
     schema.pop("required", None)
-    return _published(schema, "A fingerpad scene")
+    return published_schema(schema, "A fingerpad scene")
 
 
 def specimen_json_schema() -> dict[str, Any]:
     """JSON schema of a specimen file as people write it."""
-    return _published(SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen")
-
-
-def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": title,
-        **_tidy(schema),
-    }
-
-
-def _tidy(schema: Any) -> Any:
-    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is
-    required.
-    """
-    if isinstance(schema, list):
-        return [_tidy(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    tidy = {
-        key: _tidy(value)
-        for key, value in schema.items()
-        if not (key == "title" or (key == "default" and not isinstance(value, str)))
-    }
-    if "const" in tidy.get("properties", {}).get("shape", {}):
-        tidy["required"] = ["shape", *tidy.get("required", [])]
-    return tidy
+    return published_schema(
+        SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen"
+    )

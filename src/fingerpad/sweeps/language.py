@@ -25,7 +25,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
-from fingerpad.fields import filled, listed, number, whole
+from fingerpad.fields import filled, listed, number, published_schema, whole
 from fingerpad.files import expanded
 from fingerpad.scenes.scene import LEVELS, Scene, load_scene
 from fingerpad.tables import TableError, read_table
@@ -699,22 +699,4 @@ def sweep_json_schema() -> dict[str, Any]:
         "additionalProperties": {"anyOf": anyof},
         "minProperties": 1,
     }
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **_tidy(schema),
-        "title": "A fingerpad sweep",
-    }
-
-
-def _tidy(schema: Any) -> Any:
-    """Without generated titles and nulls."""
-    if isinstance(schema, list):
-        return [_tidy(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    tidy = {
-        key: _tidy(value)
-        for key, value in schema.items()
-        if key != "title" and not (key == "default" and value is None)
-    }
-    return tidy
+    return published_schema(schema, "A fingerpad sweep")
