@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad import simulate
-from fingerpad.planning.plan import PlanError, plan, read_plan
+from fingerpad.planning.plan import PlanError, plan
 from fingerpad.scenes.scene import Outline, Scene
 from fingerpad.scenes.specimen import InnerRidges, Layers, OuterRidges, Ridges, Specimen
 from fingerpad.specimen import (
@@ -325,19 +325,6 @@ def test_resolution_holds_for_coarse_meshes_and_narrow_ridges(size):
         assert per_wave >= 8.0 - 1e-9 and per_height >= 4
 
 
-def test_ridges_do_not_blow_up_the_mesh(meshes):
-    """Twice the plain pad's nodes for inner ridges, and the fat has no more than before."""
-    plain = build_pad_mesh(OUTLINE, SIZE)
-    assert len(meshes["inner"].points) < 2.05 * len(plain.points)
-    assert len(meshes["outer"].points) < 3.0 * len(plain.points)
-    fat = [
-        np.count_nonzero(mesh.region == mesh.regions.index("fat"))
-        for mesh in (plain, meshes["inner"])
-    ]
-    assert fat[1] < 1.1 * fat[0]
-    assert len(skin_chain(meshes["inner"])) < 1.1 * len(skin_chain(plain))
-
-
 def test_counting_is_building(case):
     given_ridges, corneum, mesh = case
     quality = quality_of(mesh)
@@ -508,20 +495,6 @@ def test_plan_says_why_and_how_finely():
     )
 
 
-def test_ridges_change_nothing_else_of_the_plan():
-    plain, ridged = (plan(scene({"ridges": each}, accuracy="thesis")) for each in ("none", "inner"))
-    assert not plain.effects["ridges"].on and plain.effects["ridges"].why == "the specimen has none"
-    assert (
-        replace(ridged.mesh_size, focus=()) == plain.mesh_size
-        and ridged.contact_edge == plain.contact_edge
-    )
-    assert {name: e for name, e in ridged.effects.items() if name != "ridges"} == {
-        name: e for name, e in plain.effects.items() if name != "ridges"
-    }
-    outer = plan(scene({"ridges": "inner_and_outer"}, accuracy="thesis"))
-    assert outer.contact_edge == pytest.approx(plain.contact_edge / 3)
-
-
 def test_ridges_can_be_overridden_off_but_not_on():
     asked = scene({"ridges": {"inner": {"phase": 0.1e-3}}}, effects={"ridges": False})
     chosen = plan(asked)
@@ -543,12 +516,6 @@ def test_ridges_that_are_not_symmetric_need_the_whole_pad():
     assert plan(scene({"ridges": {"inner": {"phase": "valley"}}})).effects["symmetry"].on
     with pytest.raises(PlanError, match="effects.symmetry"):
         plan(aside.model_copy(update={"effects": {"symmetry": True}}))
-
-
-def test_plan_file_keeps_ridges(tmp_path):
-    chosen = plan(scene({"ridges": "inner_and_outer"}))
-    chosen.write(tmp_path / "plan.json")
-    assert read_plan(tmp_path / "plan.json").to_dict() == chosen.to_dict()
 
 
 def test_layer_that_the_mesh_does_not_have_is_refused(tmp_path):
