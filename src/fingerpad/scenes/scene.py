@@ -296,17 +296,11 @@ class Scene(Strict):
             data["name"], data["tags"] = context.path.stem, context.tags
         data.setdefault("specimen", {})
         data.setdefault("outputs", {})
-        depths = _middles(data["specimen"], context)
-        outputs = data["outputs"]
-        if (
-            depths
-            and isinstance(outputs, Mapping)
-            and isinstance(receptors := outputs.get("receptors", {}), Mapping)
-        ):
-            data["outputs"] = {
-                **outputs,
-                "receptors": {"depths": [SI(depth) for depth in depths], **receptors},
-            }
+        depths, outputs = _middles(data["specimen"], context), data["outputs"]
+        receptors = outputs.get("receptors", {}) if isinstance(outputs, Mapping) else None
+        if depths and isinstance(receptors, Mapping):
+            receptors = {"depths": [SI(depth) for depth in depths], **receptors}
+            data["outputs"] = {**outputs, "receptors": receptors}
         return data
 
     @model_validator(mode="after")
@@ -353,30 +347,23 @@ class Scene(Strict):
 
     def _check_inside(self) -> None:
         thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
-        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
+        ground = "bone" if self.specimen.stack is None else "base"
+        deep = format_quantity(thickness, "length")
+        below = f"above 0 mm and below the {deep} from the skin to the {ground}"
+        widest = format_quantity(half_width, "length")
         for i, leg in enumerate(self.motion):
             if leg.depth is not None and leg.depth >= thickness:
-                raise Problem(
-                    f"presses to the {self._ground}", below, ("motion", i, "press_to_depth")
-                )
+                raise Problem(f"presses to the {ground}", below, ("motion", i, "press_to_depth"))
         for i, depth in enumerate(self.outputs.receptors.depths):
             if depth >= thickness:
                 raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
         for i, offset in enumerate(self.outputs.receptors.offsets):
             if abs(offset) >= half_width:
-                side = f"within {format_quantity(half_width, 'length')} of the middle"
-                raise Problem("is beside the pad", side, ("outputs", "receptors", "offsets", i))
+                side, key = f"within {widest} of the middle", ("outputs", "receptors", "offsets", i)
+                raise Problem("is beside the pad", side, key)
         edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
         if edge is not None and edge >= half_width:
-            raise Problem(
-                "is larger than the pad",
-                f"below {format_quantity(half_width, 'length')}",
-                ("accuracy", "skin_edge"),
-            )
-
-    @property
-    def _ground(self) -> str:
-        return "bone" if self.specimen.stack is None else "base"
+            raise Problem("is larger than the pad", f"below {widest}", ("accuracy", "skin_edge"))
 
     @property
     def end_time(self) -> float | None:
@@ -500,14 +487,11 @@ def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
     """Where receptors of a slab or a half-round are unless the scene says: in the middles of its
     layers, m.
     """
-    shapes = {"slab": Slab, "half_round": HalfRound}
-    given = (
-        specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
-    )
-    for key, model in shapes.items():
-        if given(key) is not None:
+    for key, model in {"slab": Slab, "half_round": HalfRound}.items():
+        stack = specimen.get(key) if isinstance(specimen, Mapping) else getattr(specimen, key, None)
+        if stack is not None:
             try:
-                return model.model_validate(given(key), context=context).receptor_depths
+                return model.model_validate(stack, context=context).receptor_depths
             except ValidationError:
                 break  # said where the specimen is read
     return ()
@@ -573,7 +557,8 @@ def scene_json_schema() -> dict[str, Any]:
         },
         "over": one
         | {
-            "description": "A family: for each key its words, and for each word what is special to the scenes so called.",
+            "description": "A family: for each key its words, "
+            "and for each word what is special to the scenes so called.",
             "additionalProperties": {
                 "anyOf": [
                     one | {"additionalProperties": {"type": ["object", "null"]}},

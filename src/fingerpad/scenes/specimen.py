@@ -181,7 +181,8 @@ _LAW_SURFACE = (
     | Annotated[
         dict[str, float | str],
         Field(
-            description="name of a law and its constants, such as {name: yeoh, second: 0.5, third: 0.1}"
+            description="name of a law and its constants, "
+            "such as {name: yeoh, second: 0.5, third: 0.1}"
         ),
     ]
 )
@@ -194,7 +195,8 @@ class Layer(Strict):
     """Isotropic elasticity of one layer."""
 
     hints: ClassVar = {
-        "thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"
+        "thickness": "is not a key of a layer, "
+        "the outline has epidermis_thickness and dermis_thickness"
     }
 
     youngs_modulus: quantity("pressure")

@@ -40,7 +40,7 @@ class GmshMissing(ImportError):
     """
 
 
-# --- the caller's side --------------------------------------------------------------------------------------------------
+# --- the caller's side --------------------------------------------------------------------------
 
 
 class _Worker:
@@ -111,7 +111,7 @@ ask = _WORKER.ask
 atexit.register(_WORKER.close)
 
 
-# --- the side of gmsh ---------------------------------------------------------------------------------------------------
+# --- the side of gmsh ---------------------------------------------------------------------------
 
 
 @contextlib.contextmanager
@@ -236,7 +236,10 @@ def _serve() -> None:
     try:
         import gmsh
     except (ImportError, OSError) as error:
-        missing = f"gmsh cannot be loaded: {error}; on Debian: sudo apt-get install -y libglu1-mesa libxcursor1 libxinerama1"
+        missing = (
+            f"gmsh cannot be loaded: {error}; "
+            "on Debian: sudo apt-get install -y libglu1-mesa libxcursor1 libxinerama1"
+        )
     while True:
         try:
             task, arguments = pickle.load(questions)

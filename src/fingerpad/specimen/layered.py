@@ -178,7 +178,8 @@ def _skin_rows(curve: OutlineCurve, size: MeshSize, ridged: RidgedPad | None, co
             and below - interface < 1.5 * (1.0 - ridged.mean) * ridged.inner.height
         ):
             raise MeshError(
-                "ridges: the dermis is too thin to mesh them; a thicker dermis or lower ridges are allowed"
+                "ridges: the dermis is too thin to mesh them; "
+                "a thicker dermis or lower ridges are allowed"
             )
         if ridged.outer is None and ridged.above - template - corneum > 0.5 * size.layer_edge:
             ends, kinds = (

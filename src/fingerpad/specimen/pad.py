@@ -154,11 +154,8 @@ class PadMesh:
         """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads
         for the element "Q2P1".
         """
-        return (
-            self.raised()
-            if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
-            else self
-        )
+        needed = self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
+        return self.raised() if needed else self
 
     def raised(self) -> PadMesh:
         """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4
@@ -171,31 +168,32 @@ class PadMesh:
             return self
         edges = element_edges(self.cells, self.element)
         pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
-        first, count = len(self.points), len(self.cells)
-        middle = first + index.reshape(-1).astype(np.int32)
-        parts, cells = (
-            [self.points, self.points[pairs].mean(axis=1)],
-            [self.cells, middle.reshape(-1, count).T],
-        )
-        if self.element == "quad4":
-            parts.append(self.points[self.cells].mean(axis=1))
-            cells.append(first + len(pairs) + np.arange(count, dtype=np.int32)[:, None])
-        known = dict(zip(map(tuple, pairs.tolist()), range(first, first + len(pairs)), strict=True))
+        first, count, index = len(self.points), len(self.cells), index.reshape(-1)
+        known = dict(zip(map(tuple, pairs.tolist()), range(len(pairs)), strict=True))
+        middles = self.points[pairs].mean(axis=1)
         skin = self.curves[SKIN]
-        sides = np.array([known[min(pair), max(pair)] for pair in skin.tolist()]) - first
+        sides = [known[min(pair), max(pair)] for pair in skin.tolist()]
         owner = np.empty(len(pairs), dtype=np.int64)
-        owner[index.reshape(-1)] = np.arange(len(edges)) % count
-        parts[1][sides] += _bulge(self.points[skin], _areas(self.points[self.cells[owner[sides]]]))
+        owner[index] = np.arange(len(edges)) % count
+        areas = _areas(self.points[self.cells[owner[sides]]])
+        middles[sides] += _bulge(self.points[skin], areas)
+        points = [self.points, middles]
+        cells = [self.cells, first + index.reshape(-1, count).T]
+        if self.element == "quad4":
+            points.append(self.points[self.cells].mean(axis=1))
+            cells.append(first + len(pairs) + np.arange(count)[:, None])
         curves = {
             name: np.array(
-                [(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32
+                [(a, b, first + known[min(a, b), max(a, b)]) for a, b in facets.tolist()], np.int32
             ).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
-        element = "tri6" if self.element == "tri3" else "quad9"
-        cells = np.column_stack(cells).astype(np.int32)
         return replace(
-            self, points=np.concatenate(parts), cells=cells, element=element, curves=curves
+            self,
+            points=np.concatenate(points),
+            cells=np.column_stack(cells).astype(np.int32),
+            element="tri6" if self.element == "tri3" else "quad9",
+            curves=curves,
         )
 
 

@@ -1,5 +1,5 @@
-"""What the files of measured profiles and courses have in common: columns named with their unit, and
-how a scene names a file.
+"""What files of profiles and of courses have in common: columns named with their unit, and how a
+scene names a file.
 """
 
 from __future__ import annotations

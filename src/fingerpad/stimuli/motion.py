@@ -490,7 +490,7 @@ class StepAndRepeat(Leg):
         return outlook._replace(moved=True)
 
 
-# --- programmes -------------------------------------------------------------------------------------------------------------
+# --- programmes ---------------------------------------------------------------------------------
 
 LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
 

@@ -278,11 +278,10 @@ class Points(Curve):
         if not self.smoothing and not is_rough(*self.measured, max(spacing, SKIN_EDGE)):
             return None
         x, _ = self.measured
-        apart, cutoff = (
-            float(np.median(np.diff(x))),
-            max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE)),
-        )
+        apart = float(np.median(np.diff(x)))
+        cutoff = max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE))
         return (
-            f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, the nodes {spacing * 1e6:.3g} um: "
+            f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, "
+            f"the nodes {spacing * 1e6:.3g} um: "
             f'stimulus.smooth: "{cutoff * 1e6:.0f} um" or more'
         )
