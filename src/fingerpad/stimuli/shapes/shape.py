@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from inspect import get_annotations
+from operator import attrgetter
 from typing import Annotated, Any
 
 from fingerpad.documents import HIDE, Problem, Strict, nearest
@@ -37,7 +38,7 @@ class Shape(Strict, Profile):
 
 
 class CurvedShape(Shape):
-    """A shape whose surface is a :class:`fingerpad.stimuli.curve.Curve`."""
+    """A shape whose surface is a :class:`fingerpad.stimuli.curve.Curve`, and answers as it does."""
 
     @cached_property
     def curve(self) -> Curve:
@@ -55,40 +56,12 @@ class CurvedShape(Shape):
         copied.__dict__.pop("curve", None)
         return copied
 
-    def evaluate(self, points):
-        return self.curve.evaluate(points)
 
-    def outline(self, x):
-        return self.curve.outline(x)
-
-    def corners(self):
-        return self.curve.corners()
-
-    def cutoffs(self, edge):
-        return self.curve.cutoffs(edge)
-
-    def felt(self, edge):
-        return self.curve.felt(edge)
-
-    def at(self, smoothing, edge):
-        return self.curve.at(smoothing, edge)
-
-    def advice(self, spacing):
-        return self.curve.advice(spacing)
-
-    @property
-    def segments(self):
-        """Pieces of the surface from left to right."""
-        return self.curve.segments
-
-    symmetric = property(lambda self: self.curve.symmetric)
-    uneven = property(lambda self: self.curve.uneven)
-    irregular = property(lambda self: self.curve.irregular)
-    steepness = property(lambda self: self.curve.steepness)
-    convexity = property(lambda self: self.curve.convexity)
-    dip = property(lambda self: self.curve.dip)
-    reach = property(lambda self: self.curve.reach)
-    known = property(lambda self: self.curve.known)
+for _name in (
+    *("evaluate", "outline", "corners", "cutoffs", "felt", "at", "advice", "segments"),
+    *("symmetric", "uneven", "irregular", "steepness", "convexity", "dip", "reach", "known"),
+):
+    setattr(CurvedShape, _name, property(attrgetter(f"curve.{_name}")))
 
 
 def _shape_of(value: Any) -> type[Shape]:
