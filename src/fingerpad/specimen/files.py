@@ -269,12 +269,15 @@ def read_specimen_mesh(specimen) -> PadMesh:
     """The mesh a scene's specimen names, its surfaces checked against the layers' names, both ways.
 
     Parameters
-    ---------- specimen : has `mesh`, `materials` (by name), `stated` (names of the layers the scene
-    gives), `fixed` and `free`.
+    ----------
+    specimen : fingerpad.scenes.specimen.Specimen
+        Has `mesh`, `materials` (by name), `stated` (names of the layers the scene gives), `fixed`
+        and `free`.
 
     Raises
     ------
-    MeshError : see `read_pad_mesh`, or a surface has no material, or a layer is no surface.
+    MeshError
+        See `read_pad_mesh`, or a surface has no material, or a layer is no surface.
     """
     names = tuple(specimen.materials)
     own = () if set(names) <= {*OPTIONAL, *REGIONS} else names

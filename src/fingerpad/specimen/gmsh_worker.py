@@ -176,9 +176,16 @@ def read(gmsh, path: str) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     """What is in a .msh file, nodes by their tags.
 
     Returns
-    ------- Node tags (n,), their places (n, 3), surfaces as {name: [(gmsh's type, element tags,
-    node tags)]}, curves likewise, and the number of all surface elements, in a group or not. A
-    group without a name has its number.
+    -------
+    tags : (n,) array
+        Node tags.
+    places : (n, 3) array
+        Where the nodes are.
+    surfaces, curves : dict
+        Name -> list of (gmsh's type, element tags, node tags). A group without a name has its
+        number.
+    count : int
+        Number of all surface elements, in a group or not.
     """
     with _session(gmsh), tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
         # alone, for gmsh runs what stands in a .opt file beside a mesh

@@ -37,13 +37,22 @@ class MeshSize:
     """How fine the built mesh shall be; all lengths in m.
 
     Parameters
-    ---------- skin_edge : edge along the skin where contact is expected (two node spacings).
-    fine_half_width : arc length from the apex within which `skin_edge` holds. layer_edge : edge
-    across epidermis and dermis. growth : largest ratio of one edge to the next finer one, along the
-    skin and into the fat under the apex. focus : pairs (x, edge): near the skin points at x and -x
-    the edge along the skin shrinks to `edge`. skin_radial_edge : first edge below the skin, growing
-    to `layer_edge`; None means `layer_edge` at once. coarse_edge : largest edge along the skin;
-    None means eight times `skin_edge`.
+    ----------
+    skin_edge : float
+        Edge along the skin where contact is expected (two node spacings).
+    fine_half_width : float
+        Arc length from the apex within which `skin_edge` holds.
+    layer_edge : float
+        Edge across epidermis and dermis.
+    growth : float
+        Largest ratio of one edge to the next finer one, along the skin and into the fat under the
+        apex.
+    focus : tuple of (float, float)
+        Pairs (x, edge): near the skin points at x and -x the edge along the skin shrinks to `edge`.
+    skin_radial_edge : float or None
+        First edge below the skin, growing to `layer_edge`; None means `layer_edge` at once.
+    coarse_edge : float or None
+        Largest edge along the skin; None means eight times `skin_edge`.
     """
 
     skin_edge: float
@@ -94,17 +103,29 @@ class PadMesh:
     """A plane mesh of the pad with named regions and curves.
 
     Parameters
-    ---------- points : (n, 2) float64, node positions in m. cells : (elements, nodes per element)
-    int32: corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
-        centre node; the order of gmsh and meshio.
-    element : "quad9", "quad4", "tri6" or "tri3". region : (elements,) int8, index into `regions`.
-    curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the
-    right of
-        the way from start to end. "skin" runs from left to right, facet after facet; a finger's
-        others are "bone" and "nail"; in a half mesh there is "symmetry".
-    symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from
-    such a mesh). half : whether this is the right half only. regions : names of the layers, outside
-    to inside. fixed : names of the curves that are held; the others, the skin among them, are free.
+    ----------
+    points : (n, 2) float64
+        Positions of the nodes in m.
+    cells : (elements, nodes per element) int32
+        Corners counter-clockwise, mid-side nodes (0-1, 1-2, ...), centre node; the order of gmsh
+        and meshio.
+    element : str
+        "quad9", "quad4", "tri6" or "tri3".
+    region : (elements,) int8
+        Index into `regions`.
+    curves : dict of str to (facets, 2 or 3) int32
+        Node numbers (start, end[, middle]), the material on the right of the way from start to
+        end. "skin" runs from left to right, facet after facet; a finger's others are "bone" and
+        "nail"; in a half mesh there is "symmetry".
+    symmetric : bool
+        Whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a
+        mesh).
+    half : bool
+        Whether this is the right half only.
+    regions : tuple of str
+        Names of the layers, outside to inside.
+    fixed : tuple of str
+        Names of the curves that are held; the others, the skin among them, are free.
     """
 
     points: np.ndarray
@@ -138,10 +159,8 @@ class PadMesh:
         on_axis = np.abs(points[:, 0]) <= 1e-6 * np.ptp(self.points[:, 0])
         points[on_axis, 0] = 0.0
         cells = number[self.cells[kept]]
-        curves = {}
-        for name, facets in self.curves.items():
-            facets = number[facets]
-            curves[name] = facets[(facets >= 0).all(axis=1)]
+        curves = {name: number[facets] for name, facets in self.curves.items()}
+        curves = {name: facets[(facets >= 0).all(axis=1)] for name, facets in curves.items()}
         rim = element_edges(cells, self.element)
         curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][
             :, [1, 0, *range(2, rim.shape[1])]
@@ -228,11 +247,8 @@ def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
     """
     corners = KINDS[element].corners
     quadratic = cells.shape[1] > corners
-    edges = []
-    for side in range(corners):
-        nodes = [side, (side + 1) % corners] + ([corners + side] if quadratic else [])
-        edges.append(cells[:, nodes])
-    return np.concatenate(edges)
+    sides = [(side, (side + 1) % corners, corners + side) for side in range(corners)]
+    return np.concatenate([cells[:, side[: 3 if quadratic else 2]] for side in sides])
 
 
 def skin_chain(mesh: PadMesh) -> np.ndarray:
