@@ -3,7 +3,6 @@ and changes nothing.
 """
 
 import hashlib
-import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -426,19 +425,6 @@ def test_words_for_ridges():
     assert Specimen().model_dump()["ridges"] == "none"
 
 
-def test_keys_of_ridges_left_out_are_the_thesis_files():
-    asked = Specimen(
-        ridges={"inner": {"height": 0.2e-3, "phase": "valley"}, "outer": {"period": 0.5e-3}}
-    ).ridges
-    assert asked.inner.model_dump() == pytest.approx(
-        ridges(0.2e-3, phase="valley").inner.model_dump()
-    )
-    assert asked.outer.model_dump() == pytest.approx(
-        {"period": 0.5e-3, "height": 60e-6, "shape": "smooth"}
-    )
-    assert Specimen(ridges={"half_width": 3e-3}).ridges.outer is None
-
-
 def test_stratum_corneum_is_a_layer_only_if_asked_for():
     layers = Specimen().layers
     assert layers.stratum_corneum is None and set(layers.model_dump()) == {
@@ -475,23 +461,6 @@ def scene(
         accuracy=accuracy,
         effects=effects or {},
         outputs={"receptors": {"depths": [600e-6, 915e-6], "offsets": list(offsets)}},
-    )
-
-
-def test_plan_says_why_and_how_finely():
-    chosen = plan(scene({"ridges": "inner"}, accuracy="thesis"))
-    effect = chosen.effects["ridges"]
-    assert effect.on and "0.48 mm apart, 0.15 mm high" in effect.why
-    assert re.search(
-        r"10\.\d elements from ridge to ridge, 22\.\d in the middle, 4 rows", effect.why
-    )
-    assert chosen.effects["symmetry"].on
-    mesh = build_pad_mesh(Specimen().outline, chosen.mesh_size, Specimen(ridges="inner").ridges)
-    assert chosen.nodes == len(mesh.points) // 2 + 1
-    assert chosen.smallest_edge == pytest.approx(quality_of(mesh)["smallest_edge_m"], rel=1e-9)
-    assert (
-        "outer ones 0.48 mm apart, 0.06 mm high"
-        in plan(scene({"ridges": "inner_and_outer"})).effects["ridges"].why
     )
 
 

@@ -6,15 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 
 def _corners(mesh: PadMesh) -> np.ndarray:
@@ -95,23 +92,17 @@ def quality_of(mesh: PadMesh) -> dict[str, float]:
     }
 
 
-def quality_table(meshes: Mapping[str, PadMesh]) -> DataFrame:
+def quality_table(meshes: Mapping[str, PadMesh]) -> pd.DataFrame:
     """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian
     (1).
     """
-    import pandas as pd
-
-    rows = []
-    for name, mesh in meshes.items():
-        values = quality_of(mesh)
-        rows.append(
-            {
-                "mesh": name,
-                "element": mesh.element,
-                "nodes": values["nodes"],
-                "elements": values["elements"],
-                "smallest edge (um)": values["smallest_edge_m"] * 1e6,
-                "worst scaled Jacobian (1)": values["worst_scaled_jacobian"],
-            }
-        )
-    return pd.DataFrame(rows)
+    rows = [
+        {"mesh": name, "element": mesh.element, **quality_of(mesh)} for name, mesh in meshes.items()
+    ]
+    table = pd.DataFrame(rows)
+    table["smallest_edge_m"] *= 1e6
+    names = {
+        "smallest_edge_m": "smallest edge (um)",
+        "worst_scaled_jacobian": "worst scaled Jacobian (1)",
+    }
+    return table.rename(columns=names)
