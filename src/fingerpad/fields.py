@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import operator
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Annotated, Any, Literal
@@ -25,6 +26,15 @@ class SI(float):
     """A number already in SI that takes the place of text in a document being filled in."""
 
 
+_SIGNS = {
+    "positive": (operator.gt, "above zero"),
+    "non-negative": (operator.ge, "of zero or more"),
+    "nonzero": (operator.ne, "other than zero"),
+    "any": (lambda value, zero: True, ""),
+}
+"""Sign of a quantity -> the comparison with zero that must hold, and its words."""
+
+
 def quantity(
     dimension: str,
     sign: Literal["positive", "non-negative", "nonzero", "any"] = "positive",
@@ -40,28 +50,15 @@ def quantity(
             return value
         in_python = info.context is None or isinstance(value, SI)
         kind = DIMENSIONS[dimension]
+        number = in_python and not isinstance(value, str)
         try:
-            result = (
-                parse_number(value)
-                if in_python and not isinstance(value, str)
-                else parse_quantity(value, dimension)
-            )
+            result = parse_number(value) if number else parse_quantity(value, dimension)
         except QuantityError as error:
             if words:
                 raise Problem(error.problem, " or ".join((*words, error.allowed))) from None
             raise
-        wrong = {
-            "positive": result <= 0,
-            "non-negative": result < 0,
-            "nonzero": result == 0,
-            "any": False,
-        }[sign]
-        if wrong:
-            right = {
-                "positive": "above zero",
-                "non-negative": "of zero or more",
-                "nonzero": "other than zero",
-            }[sign]
+        holds, right = _SIGNS[sign]
+        if not holds(result, 0):
             what = "is negative" if result < 0 else "is zero"
             raise Problem(f"{what}{note}", f"{kind.noun} {right} such as '{kind.example}'")
         return result

@@ -126,23 +126,3 @@ class RidgedPad:
         with_interface = np.minimum((d - self.above) / above, (self.below - d) / below)
         with_interface = np.clip(with_interface, 0.0, 1.0)
         return d + self.skin_shift(s) * with_skin + self.interface_shift(s) * with_interface
-
-    def nearest(self, which: str) -> tuple[float, float]:
-        """Lateral position and depth (m, below the smooth skin) of the inner ridge's tip or valley
-        nearest to x = 0.
-
-        Of two valleys equally near the right one is meant. ``which`` is "tip" or "valley"; a tip is
-        the deepest epidermis.
-
-        Raises
-        ------
-        ValueError : another word.
-        """
-        if which not in ("tip", "valley"):
-            raise ValueError(f"a ridge has a tip and a valley, not {which!r}")
-        first = self.tip if which == "tip" else self.tip + self.wave / 2
-        step = self.pitch if which == "tip" else self.wave
-        near = first - step * np.round(first / step) + step * np.arange(-1, 2)
-        s = near[np.lexsort((-near, np.round(np.abs(near), 12)))[0]]
-        depth = float(self.interface + self.interface_shift(s))
-        return float(self.curve.point(self.curve.theta_at(s), depth)[0, 0]), depth
