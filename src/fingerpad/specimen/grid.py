@@ -7,6 +7,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from fingerpad.specimen.outline import OutlineCurve, bisect
 from fingerpad.specimen.pad import MeshSize
@@ -20,7 +21,7 @@ def divide(grid: np.ndarray, edge: np.ndarray, low: float, high: float, rounding
     """Division points of [low, high] such that edges follow the wanted `edge` given on `grid`."""
     part = (grid >= low) & (grid <= high)
     s, density = grid[part], 1.0 / edge[part]
-    number = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))))
+    number = cumulative_trapezoid(density, s, initial=0.0)
     count = max(1, int(rounding(number[-1] - 1e-6)))
     points = np.interp(np.linspace(0.0, number[-1], count + 1), number, s)
     points[0], points[-1] = low, high

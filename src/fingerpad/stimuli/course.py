@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+from scipy.interpolate import make_lsq_spline
 
 from fingerpad.stimuli.columns import columns_with_units
 from fingerpad.tables import TableError, read_table
@@ -96,16 +96,8 @@ def _noise(values: np.ndarray) -> float:
 
 def _fitted(times: np.ndarray, values: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Values (k,) at corners of the pieces that fit all samples best, by least squares."""
-    knots = times[corners]
-    piece = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-    share = (times - knots[piece]) / (knots[piece + 1] - knots[piece])
-    bands, right = np.zeros((2, len(knots))), np.zeros(len(knots))
-    for first, weight in ((0, 1 - share), (1, share)):
-        np.add.at(bands[1], piece + first, weight**2)
-        np.add.at(right, piece + first, weight * values)
-    np.add.at(bands[0], piece + 1, share * (1 - share))
-    bands[1] *= 1 + 1e-12
-    return np.maximum(solveh_banded(bands, right), 0.0)
+    knots = np.pad(times[corners], 1, mode="edge")
+    return np.maximum(make_lsq_spline(times, values, knots, k=1).c, 0.0)
 
 
 def corners_of(times: np.ndarray, values: np.ndarray, within: float) -> np.ndarray:

@@ -4,25 +4,11 @@ machine code that is kept.
 
 from math import atan2, cos, hypot, inf, sin
 
+import numpy as np
 from numba import njit
 
-_JIT = {"error_model": "numpy", "boundscheck": False}
 
-
-@njit(**_JIT | {"inline": "always"})
-def _at(x, ends, right):
-    """The first of the inner ends at or after ``x``; with ``right`` the first after it."""
-    low, high = 1, len(ends) - 1
-    while low < high:
-        middle = (low + high) // 2
-        if ends[middle] < x or (right and ends[middle] == x):
-            low = middle + 1
-        else:
-            high = middle
-    return low - 1
-
-
-@njit(**_JIT)
+@njit(error_model="numpy", boundscheck=False)
 def closest(points, below, within, ends, pieces, limits, distance, gradient, curvature):
     """Signed distance (n,), its gradient (n, 2) and curvature (n,) at ``points`` (n, 2), into the
     last three.
@@ -38,7 +24,8 @@ def closest(points, below, within, ends, pieces, limits, distance, gradient, cur
     last, looked = len(end_x) - 2, 0
     for k in range(len(points)):
         x, y = points[k, 0], points[k, 1]
-        first, final = _at(x - within[k], end_x, False), _at(x + within[k], end_x, True)
+        first = np.searchsorted(end_x[1:-1], x - within[k])
+        final = np.searchsorted(end_x[1:-1], x + within[k], side="right")
         looked += final + 1 - first
         to_piece, to_corner, on, at = inf, inf, first, first
         for piece in range(first, final + 1):
