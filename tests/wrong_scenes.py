@@ -333,7 +333,7 @@ BAD = {
     "ridges wider than the pad": (
         specimen(ridges={"half_width": "9 mm"}),
         "specimen.ridges.half_width",
-        "wider than the section",
+        "half of the section",
     ),
     "negative contact length": (
         specimen(contact_length="-10 mm"),
