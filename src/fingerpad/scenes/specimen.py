@@ -158,9 +158,10 @@ def _read_law(value: Any) -> Any:
         problem = "is missing" if name is None else "is not the name of a law"
         raise Problem(problem, ", ".join(LAWS), ("name",) if isinstance(value, Mapping) else ())
     known, constants = LAWS[name].constants, []
-    for key in given.keys() - known.keys():
-        allowed = ", ".join(known) or "none"
-        raise Problem(f"is no constant of {name}", allowed, (str(key)[:60],), HIDE)
+    for key in given:
+        if key not in known:
+            allowed = ", ".join(known) or "none"
+            raise Problem(f"is no constant of {name}", allowed, (str(key)[:60],), HIDE)
     for key, constant in known.items():
         try:
             value = parse_number(given.get(key, constant.default))
