@@ -136,7 +136,8 @@ def test_gmsh_ends_with_the_process_that_started_it(tmp_path):
     """Killed in the middle of a task."""
     script = (
         "import fingerpad.specimen.gmsh_worker as w, threading, time, os\n"
-        "threading.Thread(target=w.ask, args=('rectangle', 3000, (900, 900, 900)), daemon=True).start()\n"
+        "task = 'rectangle', 3000, (900, 900, 900)\n"
+        "threading.Thread(target=w.ask, args=task, daemon=True).start()\n"
         "time.sleep(1.5)\n"
         "print(w._WORKER._process.pid, flush=True)\n"
         "os.kill(os.getpid(), 9)\n"

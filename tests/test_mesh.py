@@ -608,7 +608,8 @@ def test_surfaces_have_names_of_their_own(tmp_path):
         read_pad_mesh(path, layers=("cover", "gel"))
     with pytest.raises(
         MeshError,
-        match=r"48 surface elements are in none of cover, foam; each must be in one .*also has core",
+        match=r"48 surface elements are in none of cover, foam; "
+        r"each must be in one .*also has core",
     ):
         read_pad_mesh(path, layers=("cover", "foam"))
 

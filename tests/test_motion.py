@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from fingerpad.documents import Problem
 from fingerpad.fields import number
-from fingerpad.scenes import scene
 from fingerpad.scenes.scene import Hold, PressToDepth, PressToForce, Slide, StepAndRepeat
 from fingerpad.stimuli import motion
 from fingerpad.stimuli.motion import STEADY, geometric, programme

@@ -130,7 +130,7 @@ def test_profile_must_be_single_valued(x):
         Points(x, np.zeros(len(x)))
 
 
-# -- lines and arcs -----------------------------------------------------------------------------------------------------------
+# -- lines and arcs ------------------------------------------------------------------------------
 
 
 def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
