@@ -56,7 +56,7 @@ def stack(
     )
 
 
-# -- meshes of one's own -----------------------------------------------------------------------------------------------
+# -- meshes of one's own -------------------------------------------------------------------------
 
 SIZE = MeshSize(skin_edge=0.5e-3, fine_half_width=3e-3, layer_edge=0.4e-3, growth=1.5)
 
@@ -209,7 +209,7 @@ def test_a_finger_s_layer_that_the_mesh_has_not(tmp_path):
         plan(scene)
 
 
-# -- slabs and half-rounds of a scene ---------------------------------------------------------------------------------------
+# -- slabs and half-rounds of a scene ------------------------------------------------------------
 
 
 def test_a_slab_says_what_was_not_given(tmp_path):
@@ -332,7 +332,7 @@ def test_a_plate_on_held_ends_is_refused(tmp_path):
     )
 
 
-# -- against truth -----------------------------------------------------------------------------------------------------
+# -- against truth -------------------------------------------------------------------------------
 
 SMALL = {"finite_strain": "off"}
 

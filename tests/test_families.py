@@ -81,7 +81,8 @@ def test_an_extending_family_takes_changes_and_adds(folder):
         "thesis.yaml",
     ]
     (folder / "changed.yaml").write_text(
-        "extends: press.yaml\nover: {surface: {3: {friction: 0.9}, line: {stimulus: {shape: line}}}}"
+        "extends: press.yaml\n"
+        "over: {surface: {3: {friction: 0.9}, line: {stimulus: {shape: line}}}}"
     )
     changed = read_family(folder / "changed.yaml")
     assert list(changed) == ["changed_flat", "changed_3", "changed_line"]

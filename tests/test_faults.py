@@ -304,63 +304,6 @@ def test_inputs_are_read_without_waiting_and_up_to_a_size(tmp_path):
     os.close(end)
 
 
-# --- caches ---------------------------------------------------------------------------------------
-
-
-def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
-    """Meshes in the user's cache: cut short, empty, or somebody else's."""
-    code = (
-        "import hashlib\n"
-        "from fingerpad.specimen.build import _reference_quads\n"
-        "print(hashlib.sha256(_reference_quads(6, (1, 2, 3))[0].tobytes()).hexdigest())\n"
-    )
-
-    def printed():
-        cache = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
-        words = [sys.executable, "-c", code]
-        return subprocess.run(words, capture_output=True, text=True, env=cache, check=True).stdout
-
-    first = printed()
-    (kept,) = (path for path in tmp_path.rglob("*.npz"))
-    for content in (kept.read_bytes()[: kept.stat().st_size // 2], b"", b'{"state": []}'):
-        kept.write_bytes(content)
-        assert printed() == first
-
-
-def test_a_cut_or_foreign_result_is_named(tmp_path, histories):
-    """Cut anywhere, empty, another program's, or another kind of result: one line that names it and
-    says what to do.
-    """
-    import xarray as xr
-
-    from cysyk1999.measures.inputs import read_results
-    from fingerpad.results import ResultError, read_history, write_history
-
-    path = tmp_path / "simulations" / "mine" / "history.nc"
-    path.parent.mkdir(parents=True)
-    write_history(histories[0], path)
-    whole = path.read_bytes()
-    read_history(path)
-    for content in (
-        b"",
-        b"CDF",
-        whole[:100],
-        whole[: len(whole) // 2],
-        whole[:-4096],
-        b"time,force\n0,0\n",
-    ):
-        path.write_bytes(content)
-        for read in (read_history, lambda file: read_results([file])[0]["mine"]):
-            with pytest.raises(
-                ResultError,
-                match=r"history\.nc: cut off, or no NetCDF file; remove it and run again",
-            ):
-                read(path)
-    xr.Dataset({"temperature": ("time", [1.0])}).to_netcdf(path)
-    with pytest.raises(ResultError, match=r"history\.nc: holds no time|holds no leg"):
-        read_history(path)
-
-
 # --- for real -------------------------------------------------------------------------------------
 
 

@@ -17,6 +17,7 @@ import pytest
 from fingerpad.cli import main
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen import MeshSize, build_pad_mesh, read_pad_mesh, write_pad
+from fingerpad.specimen.build import _rectangle
 from fingerpad.specimen.gmsh_worker import GmshError, _Worker, ask
 from synthetic import OUTLINE as THESIS
 
@@ -26,9 +27,9 @@ COARSE = MeshSize(skin_edge=1e-3, fine_half_width=2e-3, layer_edge=0.5e-3, growt
 
 
 @pytest.fixture
-def no_cache(tmp_path, monkeypatch):
-    """A user whose cache is empty, so that gmsh has to work."""
-    monkeypatch.setattr("fingerpad.specimen.build.cache_folder", lambda name: None)
+def no_cache():
+    """No mesh is remembered, so that gmsh has to work."""
+    _rectangle.cache_clear()
 
 
 def pad():
@@ -135,7 +136,8 @@ def test_gmsh_ends_with_the_process_that_started_it(tmp_path):
     """Killed in the middle of a task."""
     script = (
         "import fingerpad.specimen.gmsh_worker as w, threading, time, os\n"
-        "threading.Thread(target=w.ask, args=('rectangle', 3000, (900, 900, 900)), daemon=True).start()\n"
+        "task = 'rectangle', 3000, (900, 900, 900)\n"
+        "threading.Thread(target=w.ask, args=task, daemon=True).start()\n"
         "time.sleep(1.5)\n"
         "print(w._WORKER._process.pid, flush=True)\n"
         "os.kill(os.getpid(), 9)\n"

@@ -22,7 +22,7 @@ from test_scene import changed, write
 NAMES = ("indentation_depth", "contact_width", "centre_pressure", "strain_energy_density")
 
 
-# -- the filter ---------------------------------------------------------------------------------------------------------------
+# -- the filter ----------------------------------------------------------------------------------
 
 
 @pytest.mark.unit
@@ -125,7 +125,7 @@ def test_noise_is_smoothed_away_and_shape_is_kept(folder):
     assert waves.smoothing <= 134.5e-6 and waves.moved < 2e-6
 
 
-# -- where the points end -----------------------------------------------------------------------------------------------------
+# -- where the points end ------------------------------------------------------------------------
 
 
 @pytest.mark.unit
@@ -233,7 +233,7 @@ def test_points_beside_the_finger_are_refused(tmp_path, capsys):
     )
 
 
-# -- reading ------------------------------------------------------------------------------------------------------------------
+# -- reading -------------------------------------------------------------------------------------
 
 
 @pytest.mark.unit
@@ -280,7 +280,7 @@ def test_units_that_cannot_be_meant(content, words, tmp_path):
     assert words in str(caught.value) and len(str(caught.value).splitlines()) == 1
 
 
-# -- noise --------------------------------------------------------------------------------------------------------------------
+# -- noise ---------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -392,7 +392,8 @@ def test_the_advice_works(folder, monkeypatch):
 @pytest.mark.parametrize(
     "motion",
     [
-        '[{press_to_depth: "0.6 mm", speed: "2 mm/s"}, {slide: "1 mm", speed: "10 mm/s", keep: depth}]',
+        '[{press_to_depth: "0.6 mm", speed: "2 mm/s"}, '
+        '{slide: "1 mm", speed: "10 mm/s", keep: depth}]',
         '[{press_to_force: "20 gf", rate: "40 gf/s"}, {slide: "1 mm", speed: "10 mm/s"}]',
         '[{press_to_force: "20 gf"}, {step: "1 mm", every: "0.5 mm"}]',
     ],

@@ -22,17 +22,6 @@ def outline(**changed):
     return SimpleNamespace(**{**THESIS, **changed})
 
 
-def test_parameters_come_out():
-    curve = OutlineCurve(outline())
-    theta = np.linspace(0.0, np.pi, 20001)
-    x, y = curve.point(theta).T
-    assert x.max() == pytest.approx(8.5e-3, rel=1e-12)
-    assert (y.max(), y.min()) == pytest.approx((6e-3, -6.2e-3), rel=1e-12)
-    assert 1.0 / curve.curvature(0.0)[0] == pytest.approx(7.9e-3, rel=1e-12)
-    assert x[0] == 0.0 and x[-1] == 0.0
-    np.testing.assert_array_equal(curve.normal([0.0]), [[0.0, 1.0]])
-
-
 def test_circle_has_the_circles_curvature_length_and_offset():
     radius = 7e-3
     circle = outline(apex_height=radius, apex_radius=radius, half_width=radius, depth_below=radius)

@@ -130,7 +130,7 @@ def test_profile_must_be_single_valued(x):
         Points(x, np.zeros(len(x)))
 
 
-# -- lines and arcs -----------------------------------------------------------------------------------------------------------
+# -- lines and arcs ------------------------------------------------------------------------------
 
 
 def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
@@ -168,22 +168,6 @@ def test_wavy_surface_is_the_one_drawn():
     flat = STANDARD.evaluate(np.array([[-5e-3, -1e-3], [0.2, -2e-3]]))[0]
     np.testing.assert_allclose(flat, [1e-3, 2e-3], rtol=1e-12)  # the flats go on for ever
     assert not STANDARD.symmetric
-
-
-def test_segments_tell_where_which_curvature_is():
-    """Flat, eight convexities with seven hollows of the radius that follows, flat; lengths of the
-    thesis's axes.
-    """
-    segments = STANDARD.segments
-    radii = INCH_RADII
-    expected = [0, 1 / radii[0], *np.ravel([[-1 / r, 1 / r] for r in radii[1:]]), 0]
-    assert [segment.curvature for segment in segments] == pytest.approx(expected)
-    assert [before.end for before in segments[:-1]] == [after.start for after in segments[1:]]
-    length = np.array([segment.end - segment.start for segment in segments])
-    assert 1e3 * length[[0, 1, -1]] == pytest.approx([8, 11.92, 10], abs=5e-3)
-    assert 1e3 * length[1:-1].sum() == pytest.approx(62.6, abs=0.05)
-    third = next(s for s in segments if s.curvature == pytest.approx(52.5, abs=0.1))
-    assert 1e3 * third.start == pytest.approx(40, abs=2)  # "beginning near 40 mm"
 
 
 def slopes_at(profile, x, h=1e-8):
@@ -349,13 +333,6 @@ def test_what_planning_asks_of_a_surface():
     assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx(
         (1e-3, 1.0, np.pi / 4 / 1e-3)
     )
-
-
-def test_symmetry_of_arcs_is_seen():
-    ends = [-3e-3, -1e-3, 1e-3, 3e-3]
-    assert Curve(ends, np.zeros(4), [0, 100, 0]).symmetric
-    assert not Curve([-3e-3, -1e-3, 0, 1e-3, 3e-3], np.zeros(5), [0, 100, -100, 0]).symmetric
-    assert not Curve(np.array(ends) + 1e-3, np.zeros(4), [0, 100, 0]).symmetric
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@ and changes nothing.
 """
 
 import hashlib
-import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -13,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad import simulate
-from fingerpad.planning.plan import PlanError, plan, read_plan
+from fingerpad.planning.plan import PlanError, plan
 from fingerpad.scenes.scene import Outline, Scene
 from fingerpad.scenes.specimen import InnerRidges, Layers, OuterRidges, Ridges, Specimen
 from fingerpad.specimen import (
@@ -30,10 +29,11 @@ from fingerpad.specimen import (
     skin_chain,
     write_pad,
 )
-from fingerpad.specimen.build import smallest_edge
+from fingerpad.specimen.build import size_of
+from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import below_outline, below_skin
 from fingerpad.specimen.pad import element_edges
-from fingerpad.specimen.quality import jacobians, sample_points
+from fingerpad.specimen.quality import jacobians
 from fingerpad.specimen.ridges import mean_shape, ridge_shape
 
 pytestmark = pytest.mark.unit
@@ -116,8 +116,8 @@ def between(mesh, upper: str, lower: str, reach: float = 5e-3) -> np.ndarray:
 
 
 def areas(mesh) -> dict[str, float]:
-    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 324.0
-    area = np.linalg.det(jacobians(mesh, sample_points(mesh.element)[1])) @ weights
+    points, weights = KINDS[mesh.element].rule(5)
+    area = np.linalg.det(jacobians(mesh, points)) @ weights
     return dict(
         zip(
             mesh.regions,
@@ -187,25 +187,6 @@ def test_corneum_follows_outer_ridges_and_ignores_inner_ones():
         s, np.zeros_like(s)
     )
     assert thickness == pytest.approx(OUTLINE.stratum_corneum_thickness, rel=1e-12)
-
-
-def test_places_of_tip_and_valley():
-    assert RidgedPad(OUTLINE, RIDGES).nearest("tip") == (0.0, pytest.approx(0.925e-3))
-    x, depth = RidgedPad(OUTLINE, RIDGES).nearest("valley")
-    assert (x, depth) == (
-        pytest.approx(0.24e-3 * (1 - 0.775 / 11), rel=1e-3),
-        pytest.approx(0.775e-3),
-    )
-    assert RidgedPad(OUTLINE, ridges(phase="valley")).nearest("valley")[0] == pytest.approx(
-        0.0, abs=1e-18
-    )
-    x, depth = RidgedPad(OUTLINE, ridges(phase=0.1e-3)).nearest("tip")
-    assert 0.09e-3 < x < 0.1e-3 and depth == pytest.approx(0.925e-3)
-    assert RidgedPad(OUTLINE, ridges(limiting=0.5)).nearest("valley")[0] == pytest.approx(
-        0.12e-3, rel=0.1
-    )
-    with pytest.raises(ValueError, match="crest"):
-        RidgedPad(OUTLINE, RIDGES).nearest("crest")
 
 
 # -- the mesh --------------------------------------------------------------------------------------
@@ -324,25 +305,11 @@ def test_resolution_holds_for_coarse_meshes_and_narrow_ridges(size):
         assert per_wave >= 8.0 - 1e-9 and per_height >= 4
 
 
-def test_ridges_do_not_blow_up_the_mesh(meshes):
-    """Twice the plain pad's nodes for inner ridges, and the fat has no more than before."""
-    plain = build_pad_mesh(OUTLINE, SIZE)
-    assert len(meshes["inner"].points) < 2.05 * len(plain.points)
-    assert len(meshes["outer"].points) < 3.0 * len(plain.points)
-    fat = [
-        np.count_nonzero(mesh.region == mesh.regions.index("fat"))
-        for mesh in (plain, meshes["inner"])
-    ]
-    assert fat[1] < 1.1 * fat[0]
-    assert len(skin_chain(meshes["inner"])) < 1.1 * len(skin_chain(plain))
-
-
 def test_counting_is_building(case):
     given_ridges, corneum, mesh = case
-    assert count_nodes(OUTLINE, SIZE, given_ridges, corneum) == len(mesh.points)
-    assert (
-        smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == quality_of(mesh)["smallest_edge_m"]
-    )
+    quality = quality_of(mesh)
+    size = quality["nodes"], quality["smallest_edge_m"]
+    assert size_of(OUTLINE, SIZE, given_ridges, corneum) == size
 
 
 def test_ridges_of_no_height_are_the_plain_pad():
@@ -439,19 +406,6 @@ def test_words_for_ridges():
     assert Specimen().model_dump()["ridges"] == "none"
 
 
-def test_keys_of_ridges_left_out_are_the_thesis_files():
-    asked = Specimen(
-        ridges={"inner": {"height": 0.2e-3, "phase": "valley"}, "outer": {"period": 0.5e-3}}
-    ).ridges
-    assert asked.inner.model_dump() == pytest.approx(
-        ridges(0.2e-3, phase="valley").inner.model_dump()
-    )
-    assert asked.outer.model_dump() == pytest.approx(
-        {"period": 0.5e-3, "height": 60e-6, "shape": "smooth"}
-    )
-    assert Specimen(ridges={"half_width": 3e-3}).ridges.outer is None
-
-
 def test_stratum_corneum_is_a_layer_only_if_asked_for():
     layers = Specimen().layers
     assert layers.stratum_corneum is None and set(layers.model_dump()) == {
@@ -491,37 +445,6 @@ def scene(
     )
 
 
-def test_plan_says_why_and_how_finely():
-    chosen = plan(scene({"ridges": "inner"}, accuracy="thesis"))
-    effect = chosen.effects["ridges"]
-    assert effect.on and "0.48 mm apart, 0.15 mm high" in effect.why
-    assert re.search(
-        r"10\.\d elements from ridge to ridge, 22\.\d in the middle, 4 rows", effect.why
-    )
-    assert chosen.effects["symmetry"].on
-    mesh = build_pad_mesh(Specimen().outline, chosen.mesh_size, Specimen(ridges="inner").ridges)
-    assert chosen.nodes == len(mesh.points) // 2 + 1
-    assert chosen.smallest_edge == pytest.approx(quality_of(mesh)["smallest_edge_m"], rel=1e-9)
-    assert (
-        "outer ones 0.48 mm apart, 0.06 mm high"
-        in plan(scene({"ridges": "inner_and_outer"})).effects["ridges"].why
-    )
-
-
-def test_ridges_change_nothing_else_of_the_plan():
-    plain, ridged = (plan(scene({"ridges": each}, accuracy="thesis")) for each in ("none", "inner"))
-    assert not plain.effects["ridges"].on and plain.effects["ridges"].why == "the specimen has none"
-    assert (
-        replace(ridged.mesh_size, focus=()) == plain.mesh_size
-        and ridged.contact_edge == plain.contact_edge
-    )
-    assert {name: e for name, e in ridged.effects.items() if name != "ridges"} == {
-        name: e for name, e in plain.effects.items() if name != "ridges"
-    }
-    outer = plan(scene({"ridges": "inner_and_outer"}, accuracy="thesis"))
-    assert outer.contact_edge == pytest.approx(plain.contact_edge / 3)
-
-
 def test_ridges_can_be_overridden_off_but_not_on():
     asked = scene({"ridges": {"inner": {"phase": 0.1e-3}}}, effects={"ridges": False})
     chosen = plan(asked)
@@ -543,12 +466,6 @@ def test_ridges_that_are_not_symmetric_need_the_whole_pad():
     assert plan(scene({"ridges": {"inner": {"phase": "valley"}}})).effects["symmetry"].on
     with pytest.raises(PlanError, match="effects.symmetry"):
         plan(aside.model_copy(update={"effects": {"symmetry": True}}))
-
-
-def test_plan_file_keeps_ridges(tmp_path):
-    chosen = plan(scene({"ridges": "inner_and_outer"}))
-    chosen.write(tmp_path / "plan.json")
-    assert read_plan(tmp_path / "plan.json").to_dict() == chosen.to_dict()
 
 
 def test_layer_that_the_mesh_does_not_have_is_refused(tmp_path):
@@ -591,7 +508,8 @@ def test_inner_ridges_press_without_cuts_and_are_felt():
     """The energy at 600 um, in the epidermis, is larger over a tip than over a valley; the pad as a
     whole hardly knows.
     """
-    at = [0.0, RidgedPad(OUTLINE, RIDGES).nearest("valley")[0]]
+    pad = RidgedPad(OUTLINE, RIDGES)
+    at = [0.0, float(pad.curve.point(pad.curve.theta_at(pad.wave / 2), pad.interface)[0, 0])]
     plain, ridged = (
         simulate(scene({"ridges": each}, hold=0, offsets=at)) for each in ("none", "inner")
     )

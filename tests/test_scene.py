@@ -1,10 +1,8 @@
 """Scenes: what is accepted, what is refused and in which words, and what comes out."""
 
 import json
-import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
 from hypothesis import HealthCheck, given, settings
@@ -202,48 +200,6 @@ def test_scenes_of_one_family_are_in_one_file():
     assert len(SCENES) == 104 and len(FILES) <= 28
 
 
-def test_the_ramp_and_hold_scenes_are_the_eighteen():
-    names = {f"ramp{rate}_{shape}" for rate in (40, 150) for shape in ("flat", *THESIS_CURVATURES)}
-    assert {path.stem for path in SCENES if path.stem.startswith(("ramp40_", "ramp150_"))} == names
-    for name in names:
-        scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
-        ramp, hold = scene.motion
-        assert (ramp.press_to_force, hold.hold) == (pytest.approx(20 * 9.80665e-3), 2.0)
-        assert scene.end_time == pytest.approx(2 + 20 / int(name[4:].split("_")[0]))
-        label = name.split("_")[1]
-        if label == "flat":
-            assert isinstance(scene.stimulus, Flat)
-        else:
-            assert scene.stimulus.curvature == pytest.approx(THESIS_CURVATURES[label], rel=1e-12)
-            assert scene.stimulus.curvature == pytest.approx(float(label[1:]), rel=5e-3)
-
-
-def test_the_strokes_are_the_thesis_s():
-    """Five velocities over the whole surface, three and a stepped one over its first two
-    convexities, to their ends.
-    """
-    for speed in (1, 5, 10, 20, 40):
-        scene = load_scene(CONFIG / "scenes" / f"stroke_{speed}.yaml")
-        assert scene.stimulus == Wavy() and scene.friction > 0
-        assert scene.motion[1] == Slide(slide=80e-3, speed=speed / 1000, keep="force")
-        assert scene.end_time == pytest.approx(0.5 + 80 / speed)
-        assert len(scene.outputs.snapshots) == (85 if speed == 10 else 0)
-    sub = [
-        load_scene(CONFIG / "scenes" / f"{name}.yaml")
-        for name in ("stroke_sub_1", "stroke_sub_10", "stroke_sub_40", "step_sub")
-    ]
-    for scene in sub:
-        assert (
-            scene.stimulus.curvatures == pytest.approx(Wavy().curvatures[:2], rel=1e-5)
-            and scene.stimulus.length > 50e-3
-        )
-    assert [scene.motion[1].speed for scene in sub[:3]] == pytest.approx([1e-3, 10e-3, 40e-3])
-    assert sub[3].motion == (
-        PressToForce(press_to_force=20 * 9.80665e-3),
-        StepAndRepeat(step=50e-3, every=1e-3),
-    )
-
-
 def test_what_is_left_out_is_the_thesis_s(folder):
     scene = load_scene(write(folder, RAMP_AND_HOLD))
     assert scene.specimen.outline == Outline(
@@ -384,29 +340,6 @@ def test_effects_are_switches_in_any_yaml(folder, text, effects):
 )
 def test_accuracy(folder, accuracy, value):
     assert load_scene(write(folder, changed(accuracy=accuracy))).accuracy == value
-
-
-def test_the_wavy_surface_is_the_thesis_s_unless_told(folder):
-    """Eight inch radii, and a length that is that of flats and chords."""
-    inch = 25.4e-3
-    radii = [radius * inch for radius in (1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125)]
-    assert Wavy().curvatures == pytest.approx([1 / radius for radius in radii], rel=1e-12)
-    assert load_scene(write(folder, wavy())).stimulus == Wavy()
-    chords = 2 * math.sin(math.radians(9)) * np.array(radii)
-    assert chords[0] == pytest.approx(11.92e-3, abs=5e-6)
-    assert Wavy().length == pytest.approx(18e-3 + chords.sum() + chords[1:].sum())
-    own = {
-        "curvatures": ["50 1/m"],
-        "half_angle": "30 deg",
-        "lead_in": "1 mm",
-        "run_out": "2 mm",
-        "fillet": "0.5 mm",
-    }
-    stimulus = load_scene(write(folder, wavy(**own))).stimulus
-    assert stimulus == Wavy(
-        curvatures=(50.0,), half_angle=math.pi / 6, lead_in=1e-3, run_out=2e-3, fillet=0.5e-3
-    )
-    assert stimulus.length == pytest.approx(23e-3)
 
 
 def test_the_surface_may_be_used_to_its_ends(folder):

@@ -140,7 +140,7 @@ def test_marks_are_of_each_leg(tmp_path):
     )
 
 
-# --- the end of the skin --------------------------------------------------------------------------
+# --- the end of the skin ------------------------------------------------------------------------
 
 ENDS = {
     # skin from, to (mm) of a slab from -10 to 10 mm; friction; is the end unbounded?

@@ -197,7 +197,8 @@ BAD = {
     "wrong dimension": (
         motion({"press_to_force": "20 gf", "rate": "40 gf"}),
         "motion[0].rate",
-        "'40 gf' has the wrong dimension: it is a force; allowed: a force rate with its unit such as",
+        "'40 gf' has the wrong dimension: it is a force; "
+        "allowed: a force rate with its unit such as",
     ),
     "mass for force": (
         motion({"press_to_force": "20 g"}),
@@ -333,7 +334,7 @@ BAD = {
     "ridges wider than the pad": (
         specimen(ridges={"half_width": "9 mm"}),
         "specimen.ridges.half_width",
-        "wider than the section",
+        "half of the section",
     ),
     "negative contact length": (
         specimen(contact_length="-10 mm"),

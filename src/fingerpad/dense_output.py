@@ -13,10 +13,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.interpolate import Akima1DInterpolator, CubicHermiteSpline, CubicSpline
 
 from fingerpad.mechanics.stepping import Record
 from fingerpad.mechanics.strides import Passage, Touch
-from fingerpad.splines import akima_slopes, hermite, spline_slopes
 
 _OF_THE_STEP = ("leg", "residual", "complementarity_error", "energy_balance_error", "min_detF")
 """What an output has of the state it leads to."""
@@ -111,12 +111,12 @@ def _through(place, values, kinks, at):
     they do, but neither higher nor lower than its ends (Fritsch and Carlson 1980).
     """
     slopes = _slopes(place, values, kinks)
-    out = hermite(place, values, slopes, at)
+    out = CubicHermiteSpline(place, values, slopes)(at)
     for ends in np.column_stack([kinks - 1, kinks]):
         inside = (at > place[ends[0]]) & (at < place[ends[1]])
         most = 3 * np.diff(values[ends], axis=0) / np.diff(place[ends])
         held = np.clip(slopes[ends], np.minimum(most, 0), np.maximum(most, 0))
-        out[inside] = hermite(place[ends], values[ends], held, at[inside])
+        out[inside] = CubicHermiteSpline(place[ends], values[ends], held)(at[inside])
     return out
 
 
@@ -129,10 +129,10 @@ def _slopes(place, values, kinks):
     pieces = np.split(np.arange(len(place)), kinks)
     slopes = np.empty(values.shape)
     if min(map(len, pieces)) < _LEAST:
-        slopes[:] = akima_slopes(place, values)
+        slopes[:] = Akima1DInterpolator(place, values, method="makima")(place, 1)
     for each in pieces:
         if len(each) >= _LEAST:
-            slopes[each] = spline_slopes(place[each], values[each])
+            slopes[each] = CubicSpline(place[each], values[each])(place[each], 1)
     return slopes
 
 
@@ -187,8 +187,8 @@ def _of_nodes(place, pressure, at):
     places (n,): their squares, which grow evenly from where a node begins to touch, along Akima's
     curves.
     """
-    squares = pressure**2
-    return np.sqrt(np.maximum(hermite(place, squares, akima_slopes(place, squares), at), 0.0))
+    squares = Akima1DInterpolator(place, pressure**2, method="makima")(at)
+    return np.sqrt(np.maximum(squares, 0.0))
 
 
 def _pressing(of_nodes, carried, ends, share):

@@ -116,14 +116,10 @@ def error_line(file: Any, location: tuple, problem: Problem, document: Any = Non
     return one_line(f"{where}: {shown}{problem.problem}{_or_allowed(problem.allowed)}")
 
 
-def explain(
-    error: ValidationError, file: Any, document: Any, tags: frozenset[str] = frozenset()
-) -> SceneError:
-    """The first error of a validation as a `SceneError`; `tags` are union labels to leave out of
-    the key.
-    """
+def explain(error: ValidationError, file: Any, document: Any) -> SceneError:
+    """The first error of a validation as a `SceneError`."""
     first = error.errors(include_url=False, include_input=False)[0]
-    location = tuple(part for part in first["loc"] if part not in tags)
+    location = first["loc"]
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, SceneError):
         return cause

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+import operator
+from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
+from pydantic_core import core_schema
 
 from fingerpad.documents import Problem
 from fingerpad.units import (
@@ -44,6 +47,15 @@ def as_written(value: Any) -> Any:
     )
 
 
+_SIGNS = {
+    "positive": (operator.gt, "above zero"),
+    "non-negative": (operator.ge, "of zero or more"),
+    "nonzero": (operator.ne, "other than zero"),
+    "any": (lambda value, zero: True, ""),
+}
+"""Sign of a quantity -> the comparison with zero that must hold, and its words."""
+
+
 def quantity(
     dimension: str,
     sign: Literal["positive", "non-negative", "nonzero", "any"] = "positive",
@@ -61,28 +73,15 @@ def quantity(
             info.context is None and not isinstance(value, (_Whole, _Number))
         )
         kind = DIMENSIONS[dimension]
+        number = in_python and not isinstance(value, str)
         try:
-            result = (
-                parse_number(value)
-                if in_python and not isinstance(value, str)
-                else parse_quantity(value, dimension)
-            )
+            result = parse_number(value) if number else parse_quantity(value, dimension)
         except QuantityError as error:
             if words:
                 raise Problem(error.problem, " or ".join((*words, error.allowed))) from None
             raise
-        wrong = {
-            "positive": result <= 0,
-            "non-negative": result < 0,
-            "nonzero": result == 0,
-            "any": False,
-        }[sign]
-        if wrong:
-            right = {
-                "positive": "above zero",
-                "non-negative": "of zero or more",
-                "nonzero": "other than zero",
-            }[sign]
+        holds, right = _SIGNS[sign]
+        if not holds(result, 0):
             what = "is negative" if result < 0 else "is zero"
             raise Problem(f"{what}{note}", f"{kind.noun} {right} such as '{kind.example}'")
         return result
@@ -138,12 +137,67 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
     `Problem` if it is wrong.
     """
     try:
-        return TypeAdapter(kind).validate_python(value, context=context)
+        return _adapter(kind).validate_python(value, context=context)
     except ValidationError as error:
         cause = error.errors()[0].get("ctx", {}).get("error")
         raise Problem(
             getattr(cause, "problem", "is not valid"), getattr(cause, "allowed", ""), (key,)
         ) from None
+
+
+@cache
+def _adapter(kind: Any) -> TypeAdapter:
+    return TypeAdapter(kind)
+
+
+class OneOf:
+    """Annotation of a field that holds a value of one of several types.
+
+    Parameters
+    ----------
+    choose : callable
+        Value -> the type that it is of, or that it describes; raises `Problem` if it is of none.
+    kinds : mapping
+        Name -> type, for the schema; types that join later are read too.
+    """
+
+    def __init__(self, choose: Callable[[Any], Any], kinds: Mapping[str, Any]) -> None:
+        self.choose, self.kinds = choose, kinds
+
+    def _read(self, value: Any, info: ValidationInfo) -> Any:
+        return _adapter(self.choose(value)).validate_python(value, context=info.context)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: Any
+    ) -> dict[str, Any]:
+        kinds = [_adapter(kind).core_schema for kind in self.kinds.values()]
+        return handler(core_schema.union_schema(kinds))
+
+
+def published_schema(schema: dict[str, Any], title: str) -> dict[str, Any]:
+    """A JSON schema as it is written to a file: without generated titles, nulls and SI defaults,
+    which documents lack; a stimulus's shape is required.
+    """
+    dialect = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": dialect, "title": title, **_tidy(schema)}
+
+
+def _tidy(schema: Any) -> Any:
+    if isinstance(schema, list):
+        return [_tidy(item) for item in schema if item != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    tidy = {
+        key: _tidy(value)
+        for key, value in schema.items()
+        if key != "title" and (key != "default" or isinstance(value, str))
+    }
+    if "const" in tidy.get("properties", {}).get("shape", {}):
+        tidy["required"] = ["shape", *tidy.get("required", [])]
+    return tidy
 
 
 def listed(value: Any) -> Any:

@@ -20,6 +20,7 @@ from typing import Any
 import meshio
 import numpy as np
 import xarray as xr
+from scipy.spatial import KDTree
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.planning.plan_data import Plan
@@ -27,7 +28,6 @@ from fingerpad.processes import threads
 from fingerpad.provenance import code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
-from fingerpad.specimen.near import nearest
 from fingerpad.stimuli.motion import NO_TIME
 
 _OF_TIME = {
@@ -547,7 +547,7 @@ def _pad_mesh(history: xr.Dataset, k: int, time: float) -> meshio.Mesh:
     now, position = history.isel(snapshot=k), history.node_position.values
     outputs = np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2)
     state = history.isel(time=int(np.flatnonzero(outputs)[-1]))
-    skin = nearest(np.column_stack([history.skin_x, history.skin_y]), position, 1)[:, 0]
+    skin = KDTree(position).query(np.column_stack([history.skin_x, history.skin_y]))[1]
     point_data = {"displacement (mm)": _in_space(now.snapshot_displacement.values * 1e3)}
     on_skin = {"contact pressure": "contact_pressure", "frictional traction": "tangential_traction"}
     for label, name in on_skin.items():

@@ -38,9 +38,10 @@ class Law:
     There ``I2 = I1 - 1 + J^2``, so that every such energy is a function psi of ``I1 = tr F^T F +
     1`` and ``J = det F`` alone. Its stress and the change of it, with ``c = cof F``, are
 
-        P  = m (F - t/(3 J) c)                                       m = 2 psi_1,   t = -3 J psi_J / m
+        P  = m (F - t/(3 J) c)
         dP = m dF + psi_J C0:dF + f F (F:dF) + g (F (c:dF) + c (F:dF)) + h c (c:dF)
-                                                                     f = 4 psi_11,  g = 2 psi_1J,  h = psi_JJ
+
+    with m = 2 psi_1, t = -3 J psi_J / m, f = 4 psi_11, g = 2 psi_1J and h = psi_JJ.
 
     The formulas take ``(i1, jac, mu, constants)``, and J^(-2/3) from :func:`isochoric`; they work
     on numbers, where they are compiled into the element loops, and on arrays alike;

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.specimen.shapes import SHAPES, square_rule, triangle_rule
+from fingerpad.specimen.element_kinds import KINDS
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class ReferenceElement:
 
     Attributes:
         name: key in :data:`ELEMENTS`. kind: of its displacement, key in
-        :data:`fingerpad.specimen.shapes.SHAPES`. points: (nq, 2) quadrature points; ``weights``:
+        :data:`fingerpad.specimen.element_kinds.KINDS`. points: (nq, 2) quadrature points; ``weights``:
         (nq,). values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the
         reference coordinates. pressure_modes: 1, 3, or nq (pointwise). nodes: (nen, 2) reference
         coordinates of the nodes.
@@ -61,7 +61,7 @@ class ReferenceElement:
         """Shape functions (n, nen) and reference gradients (n, nen, 2) at reference points ``xi``
         (n, 2).
         """
-        return SHAPES[self.kind](np.asarray(xi, dtype=float))
+        return KINDS[self.kind].shapes(np.asarray(xi, dtype=float))
 
 
 _QUAD4 = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
@@ -70,10 +70,10 @@ _TRI7 = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5], [1 / 3
 
 
 def _build(
-    name: str, kind: str, rule: tuple[np.ndarray, np.ndarray], modes: int | None, nodes: np.ndarray
+    name: str, kind: str, degree: int, modes: int | None, nodes: np.ndarray
 ) -> ReferenceElement:
-    points, weights = rule
-    values, gradients = SHAPES[kind](points)
+    points, weights = KINDS[kind].rule(degree)
+    values, gradients = KINDS[kind].shapes(points)
     return ReferenceElement(
         name, kind, points, weights, values, gradients, modes or len(weights), nodes
     )
@@ -82,13 +82,13 @@ def _build(
 ELEMENTS = {
     element.name: element
     for element in (
-        _build("Q2P1", "quad9", square_rule(3), 3, _QUAD9),
-        _build("Q1P0", "quad4", square_rule(2), 1, _QUAD4),
-        _build("P2B", "tri7", triangle_rule(5), 3, _TRI7),
-        _build("Q2", "quad9", square_rule(3), None, _QUAD9),
-        _build("Q1", "quad4", square_rule(2), None, _QUAD4),
-        _build("Q2R", "quad9", square_rule(2), None, _QUAD9),
-        _build("P2", "tri6", triangle_rule(4), None, _TRI7[:6]),
+        _build("Q2P1", "quad9", 5, 3, _QUAD9),
+        _build("Q1P0", "quad4", 3, 1, _QUAD4),
+        _build("P2B", "tri7", 5, 3, _TRI7),
+        _build("Q2", "quad9", 5, None, _QUAD9),
+        _build("Q1", "quad4", 3, None, _QUAD4),
+        _build("Q2R", "quad9", 3, None, _QUAD9),
+        _build("P2", "tri6", 4, None, _TRI7[:6]),
     )
 }
 

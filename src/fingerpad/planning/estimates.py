@@ -13,8 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-
-from fingerpad.roots import root
+from scipy.optimize import brentq
 
 _CLOSE = 1e-12
 """Of a half-width or a force, near enough to that sought."""
@@ -127,7 +126,7 @@ class PadEstimate:
         top = np.arccos(flat / (flat + radius))
         if excess(top) <= 0:
             return radius
-        angle = root(excess, 0.0, top)
+        angle = brentq(excess, 0.0, top)
         return float(flat * (1 / np.cos(angle) - 1))
 
     def least_piece(

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.special import j1
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
-from fingerpad.roots import root
 from fingerpad.specimen import measures
 from fingerpad.specimen.judge import meeting_place
 from fingerpad.specimen.pad import REGIONS, SKIN, UNNAMED, PadMesh
@@ -220,11 +220,10 @@ class StackEstimate(PadEstimate):
             depth = wanted if which else self._curved(narrowest, curvature)[1]
         else:
             half_width = np.exp(
-                root(
+                brentq(
                     lambda a: self._curved(np.exp(a), curvature)[which] - wanted,
                     np.log(narrowest),
                     np.log(limit),
-                    1e-8,
                 )
             )
             depth = self._curved(half_width, curvature)[1]

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from fingerpad.specimen.near import nearest
-from fingerpad.specimen.shapes import square_rule, triangle_rule
+from fingerpad.specimen.element_kinds import KINDS
 
 _EXACT = 1e-7
 """What polynomials may be off by in their own fit."""
 FITTED = {
-    "Q2P1": (square_rule(2)[0], 3),
-    "Q1P0": (square_rule(1)[0], 2),
-    "P2B": (triangle_rule(5)[0], 3),
+    "Q2P1": (KINDS["quad9"].rule(3)[0], 3),
+    "Q1P0": (np.array([[0.5, 0.5]]), 2),
+    "P2B": (KINDS["tri7"].rule(5)[0], 3),
 }
 """By element, the points of the reference cell that are sampled, and the degree of the polynomial
 fitted to what is there.
@@ -79,7 +79,7 @@ def containing(space, points, tolerance=1e-6):
         A point lies in no element.
     """
     centres = space.centres
-    near = nearest(points, centres, 24)
+    near = KDTree(centres).query(points, np.arange(1, min(24, len(centres)) + 1))[1]
     parts = [_among(space, points, near, tolerance)]
     for k in np.setdiff1d(
         np.arange(len(points)), parts[0][0]

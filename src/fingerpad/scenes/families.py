@@ -17,6 +17,7 @@ the file itself before those of the file it extends.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -73,7 +74,7 @@ def read_family(path: str | Path) -> dict[str, Written]:
     if not isinstance(document, Mapping) or "over" not in document:
         return {path.stem: Written(document, {}, files)}
     axes = _axes(path, document["over"])
-    common = {key: value for key, value in document.items() if key != "over"}
+    common = _without(document, "over")
     members = {}
     for words in itertools.product(*axes.values()):
         tags = dict(zip(axes, words, strict=True))
@@ -137,68 +138,56 @@ def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]
     if not isinstance(document, Mapping) or "extends" not in document:
         return document, (path,)
     named = document["extends"]
-    if not isinstance(named, str):
-        raise _wrong(
-            path,
-            ("extends",),
-            named,
-            "is not a path",
-            "the path of a scene or family, relative to this file",
-        )
-    base = path.parent / named
-    if not is_file(base) or base.resolve() in (each.resolve() for each in (path, *seen)):
-        problem = "extends itself" if is_file(base) else "is not an existing file"
-        raise _wrong(
-            path,
-            ("extends",),
-            named,
-            problem,
-            "the path of a scene or family, relative to this file",
-        )
-    if len(seen) >= MOST_EXTENDED:
-        raise _wrong(
-            path,
-            ("extends",),
-            named,
-            "is one file too many",
-            f"up to {MOST_EXTENDED} that extend each other",
-        )
+    base = path.parent / named if isinstance(named, str) else None
+    problem, allowed = None, "the path of a scene or family, relative to this file"
+    if base is None:
+        problem = "is not a path"
+    elif not is_file(base):
+        problem = "is not an existing file"
+    elif base.resolve() in (file.resolve() for file in (path, *seen)):
+        problem = "extends itself"
+    elif len(seen) >= MOST_EXTENDED:
+        problem, allowed = "is one file too many", f"up to {MOST_EXTENDED} that extend each other"
+    if problem:
+        raise _wrong(path, ("extends",), named, problem, allowed)
     below, files = _extended(base, (*seen, path))
-    for where, part in ((path, document), (base, below)):
-        if not isinstance(part, Mapping) or not isinstance(part.get("over") or {}, Mapping):
-            over = part.get("over") if isinstance(part, Mapping) else HIDE
-            key = ("over",) if isinstance(part, Mapping) else ()
-            raise _wrong(
-                where, key, over, "is not a mapping of keys", "keys, with a value for each"
-            )
-    own = {key: value for key, value in document.items() if key not in ("extends", "over")}
-    whole = merged({key: value for key, value in below.items() if key != "over"}, own)
-    given = {str(axis): words for axis, words in below.get("over", {}).items()}
-    over = {
-        str(axis): _taken(path, str(axis), given.get(str(axis)), words)
-        for axis, words in (document.get("over") or {}).items()
-    }
+    axes = []
+    for file, part in ((path, document), (base, below)):
+        over, key = HIDE, ()
+        if isinstance(part, Mapping):
+            over, key = part.get("over") or {}, ("over",)
+        if not isinstance(over, Mapping):
+            raise _wrong(file, key, over, "is not a mapping of keys", "keys, with a value for each")
+        axes.append({str(axis): _by_word(words) for axis, words in over.items()})
+    own, given = axes
+    over = {axis: _taken(path, axis, given.get(axis), words) for axis, words in own.items()}
     over |= {axis: words for axis, words in given.items() if axis not in over}
+    whole = merged(_without(below, "over"), _without(document, "over", "extends"))
     return whole | ({"over": over} if over else {}), (path, *files)
+
+
+def _without(document: Mapping[str, Any], *keys: str) -> dict[str, Any]:
+    return {key: value for key, value in document.items() if key not in keys}
+
+
+def _by_word(words: Any) -> Any:
+    """The words of an axis as text, each with its changes; what is no mapping is left as it is."""
+    if not isinstance(words, Mapping):
+        return words
+    return {str(word): change for word, change in words.items()}
 
 
 def _taken(path: Path, axis: str, below: Any, words: Any) -> Any:
     """The words of an axis: some of those below, or those below with changes."""
-    if isinstance(words, Mapping):
-        words = {str(word): change for word, change in words.items()}
-    if not isinstance(words, list) or below is None:
-        return (
-            words
-            if below is None
-            else merged({str(word): change for word, change in below.items()}, words)
-        )
-    known = {str(word): change for word, change in below.items()}
+    if not isinstance(below, Mapping):
+        return words
+    if not isinstance(words, list):
+        return merged(below, words)
     for word in words:
-        if str(word) not in known:
-            raise _wrong(
-                path, ("over", axis), word, "is not in the file that is extended", ", ".join(known)
-            )
-    return {str(word): known[str(word)] for word in words}
+        if str(word) not in below:
+            problem = "is not in the file that is extended"
+            raise _wrong(path, ("over", axis), word, problem, ", ".join(below))
+    return {str(word): below[str(word)] for word in words}
 
 
 def _axes(path: Path, over: Any) -> dict[str, dict[str, Any]]:
@@ -207,27 +196,19 @@ def _axes(path: Path, over: Any) -> dict[str, dict[str, Any]]:
     if not isinstance(over, Mapping) or not over:
         raise _wrong(path, ("over",), over, "is not a mapping of keys", allowed)
     axes: dict[str, dict[str, Any]] = {}
-    count = 1
     for axis, words in over.items():
+        key = ("over", str(axis))
         if not isinstance(words, Mapping) or not words or str(axis) == "family":
-            raise _wrong(path, ("over", str(axis)), words, "is not a mapping of words", allowed)
-        axes[str(axis)] = {
-            str(word): {} if change is None else change for word, change in words.items()
-        }
-        for word, change in axes[str(axis)].items():
+            raise _wrong(path, key, words, "is not a mapping of words", allowed)
+        axes[str(axis)] = changes = {}
+        for word, change in _by_word(words).items():
             if "/" in word or not word.isprintable():
-                raise _wrong(
-                    path,
-                    ("over", str(axis), word),
-                    HIDE,
-                    "cannot be part of the name of a file",
-                    "a word such as flat",
-                )
-            if not isinstance(change, Mapping):
-                raise _wrong(
-                    path, ("over", str(axis), word), change, "is not a mapping", "keys of a scene"
-                )
-        count *= len(words)
+                problem = "cannot be part of the name of a file"
+                raise _wrong(path, (*key, word), HIDE, problem, "a word such as flat")
+            changes[word] = {} if change is None else change
+            if not isinstance(changes[word], Mapping):
+                raise _wrong(path, (*key, word), change, "is not a mapping", "keys of a scene")
+    count = math.prod(map(len, axes.values()))
     if count > MOST:
         raise _wrong(path, ("over",), HIDE, f"makes {count} scenes", f"up to {MOST}")
     return axes

@@ -14,11 +14,22 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest
-from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
+from fingerpad.fields import (
+    SI,
+    Length,
+    OneOf,
+    SignedLength,
+    Time,
+    listed,
+    number,
+    published_schema,
+    quantity,
+    whole,
+)
 from fingerpad.scenes.effects import EFFECTS
 from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
@@ -35,7 +46,6 @@ from fingerpad.scenes.specimen import (
     source_of,
 )
 from fingerpad.stimuli.motion import (
-    LEGS,
     MAXIMUM_STEPS,
     Hold,
     Lift,
@@ -82,14 +92,7 @@ __all__ = [
     "specimen_json_schema",
 ]
 
-LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_SNAPSHOTS = 1000
-
-
-_TAGS = frozenset(
-    f"<{key}>"
-    for key in (*LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
-)
 
 
 # --- outputs, accuracy, effects -------------------------------------------------------------------
@@ -144,9 +147,10 @@ class Outputs(Strict):
     receptors: Receptors
     """Where strain energy is recorded."""
     snapshots: Annotated[
-        Annotated[_Times, Tag("<times>")] | Annotated[Every, Tag("<every>")],
-        Discriminator(
-            lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"
+        tuple[float, ...] | Every,
+        OneOf(
+            lambda value: Every if isinstance(value, (Mapping, Every)) else _Times,
+            {"times": _Times, "every": Every},
         ),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
@@ -206,33 +210,30 @@ class Discretisation(Strict):
 
 
 Level = Literal["draft", "thesis", "fine"]
-_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of tolerance and once, or element, skin_edge, steps"
+LEVELS = get_args(Level)
+_Tolerance = number("a tolerance above 0 and below 1", 0.0, 1.0)
+_ACCURACY = (
+    f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, "
+    "or a mapping of tolerance and once, or element, skin_edge, steps"
+)
 
 
-def _check_accuracy(value: Any) -> Any:
-    if isinstance(value, str) and value not in LEVELS:
-        try:
-            return parse_number(value)
-        except QuantityError:
-            raise Problem("is not a known accuracy", _ACCURACY) from None
-    if isinstance(value, bool) or not isinstance(value, (str, int, float, Mapping, Discretisation)):
+def _accuracy_of(value: Any) -> Any:
+    if isinstance(value, (Mapping, Discretisation)):
+        return Discretisation
+    if isinstance(value, str) and value in LEVELS:
+        return Level
+    try:
+        number = parse_number(value) if isinstance(value, str) else value
+    except QuantityError:
+        number = None
+    if isinstance(number, bool) or not isinstance(number, (int, float)):
         raise Problem("is not a known accuracy", _ACCURACY)
-    return value
+    return _Tolerance
 
 
-def _accuracy_tag(value: Any) -> str:
-    if isinstance(value, str):
-        return "<level>"
-    return "<tolerance>" if isinstance(value, (int, float)) else "<discretisation>"
-
-
-Accuracy = Annotated[
-    Annotated[Level, Tag("<level>")]
-    | Annotated[number("a tolerance above 0 and below 1", 0.0, 1.0), Tag("<tolerance>")]
-    | Annotated[Discretisation, Tag("<discretisation>")],
-    Discriminator(_accuracy_tag),
-    BeforeValidator(_check_accuracy),
-]
+_KINDS = {"level": Level, "tolerance": _Tolerance, "discretisation": Discretisation}
+Accuracy = Annotated[Level | float | Discretisation, OneOf(_accuracy_of, _KINDS)]
 
 
 def _read_effects(value: Any) -> dict[str, bool]:
@@ -295,17 +296,11 @@ class Scene(Strict):
             data["name"], data["tags"] = context.path.stem, context.tags
         data.setdefault("specimen", {})
         data.setdefault("outputs", {})
-        depths = _middles(data["specimen"], context)
-        outputs = data["outputs"]
-        if (
-            depths
-            and isinstance(outputs, Mapping)
-            and isinstance(receptors := outputs.get("receptors", {}), Mapping)
-        ):
-            data["outputs"] = {
-                **outputs,
-                "receptors": {"depths": [SI(depth) for depth in depths], **receptors},
-            }
+        depths, outputs = _middles(data["specimen"], context), data["outputs"]
+        receptors = outputs.get("receptors", {}) if isinstance(outputs, Mapping) else None
+        if depths and isinstance(receptors, Mapping):
+            receptors = {"depths": [SI(depth) for depth in depths], **receptors}
+            data["outputs"] = {**outputs, "receptors": receptors}
         return data
 
     @model_validator(mode="after")
@@ -352,30 +347,23 @@ class Scene(Strict):
 
     def _check_inside(self) -> None:
         thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
-        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
+        ground = "bone" if self.specimen.stack is None else "base"
+        deep = format_quantity(thickness, "length")
+        below = f"above 0 mm and below the {deep} from the skin to the {ground}"
+        widest = format_quantity(half_width, "length")
         for i, leg in enumerate(self.motion):
             if leg.depth is not None and leg.depth >= thickness:
-                raise Problem(
-                    f"presses to the {self._ground}", below, ("motion", i, "press_to_depth")
-                )
+                raise Problem(f"presses to the {ground}", below, ("motion", i, "press_to_depth"))
         for i, depth in enumerate(self.outputs.receptors.depths):
             if depth >= thickness:
                 raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
         for i, offset in enumerate(self.outputs.receptors.offsets):
             if abs(offset) >= half_width:
-                side = f"within {format_quantity(half_width, 'length')} of the middle"
-                raise Problem("is beside the pad", side, ("outputs", "receptors", "offsets", i))
+                side, key = f"within {widest} of the middle", ("outputs", "receptors", "offsets", i)
+                raise Problem("is beside the pad", side, key)
         edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
         if edge is not None and edge >= half_width:
-            raise Problem(
-                "is larger than the pad",
-                f"below {format_quantity(half_width, 'length')}",
-                ("accuracy", "skin_edge"),
-            )
-
-    @property
-    def _ground(self) -> str:
-        return "bone" if self.specimen.stack is None else "base"
+            raise Problem("is larger than the pad", f"below {widest}", ("accuracy", "skin_edge"))
 
     @property
     def end_time(self) -> float | None:
@@ -419,7 +407,7 @@ class Scene(Strict):
         try:
             return type(self).model_validate(data)
         except ValidationError as error:
-            raise explain(error, self.name, data, _TAGS) from None
+            raise explain(error, self.name, data) from None
 
     def with_accuracy(self, accuracy: Any) -> Scene:
         """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or
@@ -466,7 +454,7 @@ def scene_of_record(data: Mapping[str, Any]) -> Scene:
     try:
         return Scene.model_validate(data)
     except ValidationError as error:
-        raise explain(error, data.get("name", "scene"), data, _TAGS) from None
+        raise explain(error, data.get("name", "scene"), data) from None
 
 
 def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> Any:
@@ -499,14 +487,11 @@ def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
     """Where receptors of a slab or a half-round are unless the scene says: in the middles of its
     layers, m.
     """
-    shapes = {"slab": Slab, "half_round": HalfRound}
-    given = (
-        specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
-    )
-    for key, model in shapes.items():
-        if given(key) is not None:
+    for key, model in {"slab": Slab, "half_round": HalfRound}.items():
+        stack = specimen.get(key) if isinstance(specimen, Mapping) else getattr(specimen, key, None)
+        if stack is not None:
             try:
-                return model.model_validate(given(key), context=context).receptor_depths
+                return model.model_validate(stack, context=context).receptor_depths
             except ValidationError:
                 break  # said where the specimen is read
     return ()
@@ -546,7 +531,7 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
     try:
         return Scene.model_validate(written.document, context=Source(path, written.tags))
     except ValidationError as error:
-        raise explain(error, shown, written.document, _TAGS) from None
+        raise explain(error, shown, written.document) from None
 
 
 def scene_json_schema() -> dict[str, Any]:
@@ -572,7 +557,8 @@ def scene_json_schema() -> dict[str, Any]:
         },
         "over": one
         | {
-            "description": "A family: for each key its words, and for each word what is special to the scenes so called.",
+            "description": "A family: for each key its words, "
+            "and for each word what is special to the scenes so called.",
             "additionalProperties": {
                 "anyOf": [
                     one | {"additionalProperties": {"type": ["object", "null"]}},
@@ -585,35 +571,11 @@ def scene_json_schema() -> dict[str, Any]:
         {"required": keys} for keys in (["stimulus", "motion"], ["extends"], ["over"])
     ]
     schema.pop("required", None)
-    return _published(schema, "A fingerpad scene")
+    return published_schema(schema, "A fingerpad scene")
 
 
 def specimen_json_schema() -> dict[str, Any]:
     """JSON schema of a specimen file as people write it."""
-    return _published(SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen")
-
-
-def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": title,
-        **_tidy(schema),
-    }
-
-
-def _tidy(schema: Any) -> Any:
-    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is
-    required.
-    """
-    if isinstance(schema, list):
-        return [_tidy(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    tidy = {
-        key: _tidy(value)
-        for key, value in schema.items()
-        if not (key == "title" or (key == "default" and not isinstance(value, str)))
-    }
-    if "const" in tidy.get("properties", {}).get("shape", {}):
-        tidy["required"] = ["shape", *tidy.get("required", [])]
-    return tidy
+    return published_schema(
+        SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen"
+    )

@@ -5,17 +5,15 @@ given.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BeforeValidator,
-    Discriminator,
     Field,
     SerializerFunctionWrapHandler,
-    Tag,
     ValidationError,
     ValidationInfo,
     field_serializer,
@@ -25,12 +23,26 @@ from pydantic import (
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
-from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity
+from fingerpad.fields import (
+    SI,
+    Length,
+    OneOf,
+    SignedLength,
+    Time,
+    filled,
+    listed,
+    number,
+    quantity,
+)
 from fingerpad.files import BUILT_IN, expanded, is_file
 from fingerpad.laws import LAWS, Law
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 DEFAULT_SPECIMEN = "thesis"
+
+
+def _mm(value: float) -> str:
+    return format_quantity(value, "length")
 
 
 class Outline(Strict):
@@ -73,43 +85,46 @@ class Outline(Strict):
 
     @model_validator(mode="after")
     def _check_fit(self) -> Outline:
-        def mm(value: float) -> str:
-            return format_quantity(value, "length")
-
-        layers = self.epidermis_thickness + self.dermis_thickness
-        if self.soft_thickness <= 0:
-            raise Problem(
+        mm, height, widest = _mm, self.apex_height, self.half_width
+        thickest = max(
+            "epidermis_thickness", "dermis_thickness", key=lambda key: getattr(self, key)
+        )
+        layers, soft = self.epidermis_thickness + self.dermis_thickness, self.soft_thickness
+        for wrong, key, problem, allowed in (
+            (
+                soft <= 0,
+                "bone_centre_height",
                 "puts the top of the bone outside the skin",
-                f"below {mm(self.apex_height)} less the layers",
-                ("bone_centre_height",),
-            )
-        if layers >= self.soft_thickness:
-            key = (
-                "epidermis_thickness"
-                if self.epidermis_thickness >= self.dermis_thickness
-                else "dermis_thickness"
-            )
-            raise Problem(
-                f"makes the layers thicker than the pad: epidermis and dermis together are {mm(layers)}",
-                f"less than the {mm(self.soft_thickness)} from the skin to the bone",
-                (key,),
-            )
-        if self.bone_half_width >= self.half_width - layers:
-            raise Problem(
+                f"below {mm(height)} less the layers",
+            ),
+            (
+                layers >= soft,
+                thickest,
+                "makes the layers thicker than the pad: "
+                f"epidermis and dermis together are {mm(layers)}",
+                f"less than the {mm(soft)} from the skin to the bone",
+            ),
+            (
+                self.bone_half_width >= widest - layers,
+                "bone_half_width",
                 "leaves no fat beside the bone",
-                f"less than {mm(self.half_width - layers)}",
-                ("bone_half_width",),
-            )
-        if self.bone_half_height - self.bone_centre_height >= self.depth_below:
-            raise Problem(
+                f"less than {mm(widest - layers)}",
+            ),
+            (
+                self.bone_half_height - self.bone_centre_height >= self.depth_below,
+                "bone_half_height",
                 "puts the bottom of the bone outside the section",
                 f"less than {mm(self.depth_below + self.bone_centre_height)}",
-                ("bone_half_height",),
-            )
-        if self.nail_half_width > self.half_width:
-            raise Problem(
-                "is wider than the section", f"up to {mm(self.half_width)}", ("nail_half_width",)
-            )
+            ),
+            (
+                self.nail_half_width > widest,
+                "nail_half_width",
+                "is wider than the section",
+                f"up to {mm(widest)}",
+            ),
+        ):
+            if wrong:
+                raise Problem(problem, allowed, (key,))
         return self
 
 
@@ -138,17 +153,15 @@ def _read_law(value: Any) -> Any:
     if isinstance(value, ChosenLaw):
         return value
     given = dict(value) if isinstance(value, Mapping) else {"name": value}
-    name, key = given.pop("name", None), ("name",) if isinstance(value, Mapping) else ()
+    name = given.pop("name", None)
     if not isinstance(name, str) or name not in LAWS:
-        raise Problem(
-            "is not the name of a law" if name is not None else "is missing", ", ".join(LAWS), key
-        )
+        problem = "is missing" if name is None else "is not the name of a law"
+        raise Problem(problem, ", ".join(LAWS), ("name",) if isinstance(value, Mapping) else ())
     known, constants = LAWS[name].constants, []
     for key in given:
         if key not in known:
-            raise Problem(
-                f"is no constant of {name}", ", ".join(known) or "none", (str(key)[:60],), HIDE
-            )
+            allowed = ", ".join(known) or "none"
+            raise Problem(f"is no constant of {name}", allowed, (str(key)[:60],), HIDE)
     for key, constant in known.items():
         try:
             value = parse_number(given.get(key, constant.default))
@@ -169,17 +182,22 @@ _LAW_SURFACE = (
     | Annotated[
         dict[str, float | str],
         Field(
-            description="name of a law and its constants, such as {name: yeoh, second: 0.5, third: 0.1}"
+            description="name of a law and its constants, "
+            "such as {name: yeoh, second: 0.5, third: 0.1}"
         ),
     ]
 )
+
+
+_NEO_HOOKE = ChosenLaw(name="neo_hooke")
 
 
 class Layer(Strict):
     """Isotropic elasticity of one layer."""
 
     hints: ClassVar = {
-        "thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"
+        "thickness": "is not a key of a layer, "
+        "the outline has epidermis_thickness and dermis_thickness"
     }
 
     youngs_modulus: quantity("pressure")
@@ -187,24 +205,17 @@ class Layer(Strict):
     poisson_ratio: number("a number above -1 and below 0.5", -1.0, 0.5)
     """Poisson's ratio, in the state named by `moduli`."""
     law: Annotated[ChosenLaw, BeforeValidator(_read_law, json_schema_input_type=_LAW_SURFACE)] = (
-        ChosenLaw(name="neo_hooke")
+        Field(_NEO_HOOKE, exclude_if=lambda law: law == _NEO_HOOKE)
     )
     """How it stiffens when strained: the name of a law, or keys name and its constants; neo_hooke
     unless given.
     """
 
-    @model_serializer(mode="wrap")
-    def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data = handler(self)
-        if self.law == type(self).model_fields["law"].default:
-            del data["law"]
-        return data
-
 
 class Layers(Strict):
     """The layers between skin and bone."""
 
-    stratum_corneum: Layer | None = None
+    stratum_corneum: Layer | None = Field(None, exclude_if=lambda layer: layer is None)
     """Outermost part of the epidermis, if it is to be a layer of its own; keys left out are the
     epidermis's.
     """
@@ -220,21 +231,9 @@ class Layers(Strict):
         """Keys that the stratum corneum leaves out are the epidermis's."""
         if isinstance(data.get("stratum_corneum"), Mapping):
             below = data.get("epidermis")
-            below = (
-                _si(below)
-                if isinstance(below, Layer)
-                else below
-                if isinstance(below, Mapping)
-                else {}
-            )
+            below = _si(below) if isinstance(below, Layer) else below
+            below = below if isinstance(below, Mapping) else {}
             data["stratum_corneum"] = {**below, **data["stratum_corneum"]}
-        return data
-
-    @model_serializer(mode="wrap")
-    def _without_nothing(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data = handler(self)
-        if self.stratum_corneum is None:
-            del data["stratum_corneum"]
         return data
 
 
@@ -248,12 +247,8 @@ class Material(Layer):
 
 
 def _name(value: Any) -> Any:
-    if (
-        not isinstance(value, str)
-        or not 0 < len(value) <= 40
-        or not value.isprintable()
-        or value != value.strip()
-    ):
+    word = isinstance(value, str) and value.isprintable() and value == value.strip()
+    if not word or not 0 < len(value) <= 40:
         raise Problem("is not a name", "a word such as cover")
     return value
 
@@ -349,12 +344,8 @@ class HalfRound(Stack):
     @property
     def thicknesses(self) -> tuple[float, ...]:
         """Of the layers, m."""
-        given = [layer.thickness for layer in self.layers]
-        return (
-            tuple(given)
-            if given[-1] is not None
-            else (*given[:-1], self.radius - math.fsum(given[:-1]))
-        )
+        *outer, last = (layer.thickness for layer in self.layers)
+        return (*outer, self.radius - math.fsum(outer) if last is None else last)
 
     @property
     def solid(self) -> bool:
@@ -365,16 +356,10 @@ class HalfRound(Stack):
     def _check(self) -> HalfRound:
         self._check_layers(1)
         given = math.fsum(layer.thickness or 0.0 for layer in self.layers)
-        if given > self.radius * (1 + 1e-9) or (
-            self.layers[-1].thickness is None and given >= self.radius
-        ):
-            thick = format_quantity(given, "length")
-            raise Problem(
-                f"are {thick} thick together",
-                f"up to the radius, {format_quantity(self.radius, 'length')}",
-                ("layers",),
-                HIDE,
-            )
+        left_out = self.layers[-1].thickness is None
+        if given > self.radius * (1 + 1e-9) or (left_out and given >= self.radius):
+            allowed = f"up to the radius, {_mm(self.radius)}"
+            raise Problem(f"are {_mm(given)} thick together", allowed, ("layers",), HIDE)
         return self
 
 
@@ -402,7 +387,7 @@ class InnerRidges(Strict):
     @model_validator(mode="after")
     def _check(self) -> InnerRidges:
         if not isinstance(self.phase, str) and abs(self.phase) > self.pitch / 2:
-            half = format_quantity(self.pitch / 2, "length")
+            half = _mm(self.pitch / 2)
             raise Problem(
                 "is farther off than the nearest ridge tip can be",
                 f"up to half a pitch, {half}",
@@ -486,10 +471,6 @@ def _article(shape: str) -> str:
     return "an outline" if shape == "outline" else f"a {shape}"
 
 
-def _lacks(layer: Any, key: str) -> bool:
-    return isinstance(layer, Mapping) and key not in layer
-
-
 class Source:
     """Where a document comes from, and the tags of the family it belongs to: finds the files it
     names and the specimens.
@@ -503,22 +484,13 @@ class Source:
         """Absolute path of a file that the document names relative to itself."""
         return (self.path.parent / expanded(name)).absolute()
 
-    def _folders(self) -> Iterator[Path]:
-        folder = self.path.absolute().parent
-        for parent in (folder, *folder.parents):
-            yield parent / "config" / "specimens"
-        yield BUILT_IN / "specimens"
-
     def specimen_files(self) -> dict[str, Path]:
         """The specimen files by name; one in a nearer folder hides one of the same name farther
         away.
         """
-        folders = [folder for folder in self._folders() if folder.is_dir()]
-        return {
-            file.stem: file
-            for folder in reversed(folders)
-            for file in sorted(folder.glob("*.yaml"))
-        }
+        folders = [parent / "config" / "specimens" for parent in self.path.absolute().parents]
+        folders = [BUILT_IN / "specimens", *reversed(folders)]
+        return {file.stem: file for folder in folders for file in sorted(folder.glob("*.yaml"))}
 
     def specimen(self, name: str, key: tuple = ()) -> SpecimenFile:
         """The specimen file called `name`; raises `Problem` at `key` when there is none."""
@@ -531,7 +503,11 @@ class Source:
                     f"names of files in config/specimens ({names})",
                     key,
                 )
-            self._files[name] = _read_specimen(found[name], self)
+            document = read_yaml(found[name])
+            try:
+                self._files[name] = SpecimenFile.model_validate(document, context=self)
+            except ValidationError as error:
+                raise explain(error, found[name], document) from None
         return self._files[name]
 
     def part(self, name: str, part: str) -> Any:
@@ -547,22 +523,18 @@ def source_of(context: Any) -> Source:
     return context or Source(Path("scene"))
 
 
-def _read_specimen(path: Path, source: Source) -> SpecimenFile:
-    document = read_yaml(path)
-    try:
-        return SpecimenFile.model_validate(document, context=source)
-    except ValidationError as error:
-        raise explain(error, path, document) from None
-
-
 def _si(model: Strict) -> dict[str, Any]:
     """Fields of a model of SI floats, marked so that a document may hold them beside text."""
-    values = ((name, getattr(model, name)) for name in type(model).model_fields)
     return {
         name: SI(value) if isinstance(value, float) else value
-        for name, value in values
+        for name, value in model
         if value is not None
     }
+
+
+SpecimenName = Annotated[
+    str, Field(pattern=r"^[^\s/.][^\s/]*$", description="name in config/specimens")
+]
 
 
 def _named(part: str, surface: Any) -> BeforeValidator:
@@ -576,26 +548,21 @@ def _named(part: str, surface: Any) -> BeforeValidator:
             return () if (part, value) == ("prony", "none") else source.part(value, part)
         if part == "prony":
             return listed(value)
-        if isinstance(value, Mapping) and not isinstance(value, _Own):
-            default = _si(source.part(DEFAULT_SPECIMEN, part))
-            return {
-                **default,
-                **{key: _merge(default.get(key), item) for key, item in value.items()},
-            }
+        if isinstance(value, Mapping) and not isinstance(value, _OwnLayers):
+            return _over_default(source, part, value)
         return value
 
-    name = Annotated[
-        str, Field(pattern=r"^[^\s/.][^\s/]*$", description="name in config/specimens")
-    ]
-    return BeforeValidator(read, json_schema_input_type=name | surface)
+    return BeforeValidator(read, json_schema_input_type=SpecimenName | surface)
 
 
-def _merge(default: Any, given: Any) -> Any:
-    return (
-        {**_si(default), **given}
-        if isinstance(default, Strict) and isinstance(given, Mapping)
-        else given
-    )
+def _over_default(source: Source, part: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What is given of a part of a specimen, over the default specimen's, key by key."""
+    filled = _si(source.part(DEFAULT_SPECIMEN, part))
+    for key, item in given.items():
+        below = filled.get(key)
+        merged = isinstance(below, Strict) and isinstance(item, Mapping)
+        filled[key] = {**_si(below), **item} if merged else item
+    return filled
 
 
 _RIDGES = Literal["none", "inner", "inner_and_outer"]
@@ -616,29 +583,30 @@ def _read_ridges(value: Any, info: ValidationInfo) -> Any:
             "is not the kind of ridges",
             "none, inner, inner_and_outer, or keys inner, outer, half_width",
         )
-    default = _si(source_of(info.context).part(DEFAULT_SPECIMEN, "ridges"))
-    filled = {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
+    filled = _over_default(source_of(info.context), "ridges", value)
     if "outer" not in value:
-        filled.pop("outer", None)
+        del filled["outer"]
     return filled
 
 
-class _Own(dict):
+class _OwnLayers(dict):
     """Layers under names of their own."""
 
 
-def _layers_tag(value: Any) -> str:
-    read = (
-        isinstance(value, dict)
-        and value
-        and all(isinstance(layer, Material) for layer in value.values())
-    )
-    return "<own>" if isinstance(value, _Own) or read else "<finger>"
+def _layers_of(value: Any) -> Any:
+    """The type of layers: a finger's, or some under names of their own."""
+    read = isinstance(value, dict) and all(isinstance(each, Material) for each in value.values())
+    own = isinstance(value, _OwnLayers) or (read and value)
+    return dict[Name, Material] if own else Layers
 
 
 _FINGER = tuple(Layers.model_fields)
 _SHAPES = ("outline", "mesh", "slab", "half_round")
 Names = Annotated[tuple[Name, ...], BeforeValidator(listed)]
+
+
+def _nothing(value: Any) -> bool:
+    return not value
 
 
 class Specimen(Strict):
@@ -654,22 +622,22 @@ class Specimen(Strict):
     """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched;
     bone, nail and base are held.
     """
-    slab: Slab | None = None
+    slab: Slab | None = Field(None, exclude_if=_nothing)
     """A flat slab instead of an outline."""
-    half_round: HalfRound | None = None
+    half_round: HalfRound | None = Field(None, exclude_if=_nothing)
     """A half-round instead of an outline."""
-    fixed: Names = ()
+    fixed: Names = Field((), exclude_if=_nothing)
     """Further curves of the mesh that are held."""
-    free: Names = ()
+    free: Names = Field((), exclude_if=_nothing)
     """Curves of the mesh that are free; so are boundary edges in no curve."""
     layers: (
         Annotated[
-            Annotated[Layers, Tag("<finger>")] | Annotated[dict[Name, Material], Tag("<own>")],
-            Discriminator(_layers_tag),
-            _named("layers", Layers | dict[str, Material]),
+            Layers | dict[str, Material],
+            OneOf(_layers_of, {"name": SpecimenName, "finger": Layers, "own": dict[str, Material]}),
+            _named("layers", Any),
         ]
         | None
-    ) = None
+    ) = Field(None, exclude_if=_nothing)
     """Elasticity of the layers, by name or by keys; keys left out are the thesis's. Of a mesh: a
     material for each surface.
     """
@@ -701,46 +669,38 @@ class Specimen(Strict):
         given = {key for key, value in data.items() if value is not None}
         shapes = [key for key in _SHAPES if key in given]
         if len(shapes) > 1:
-            raise Problem(
-                f"is given beside {_article(shapes[0])}",
-                f"one of {' and '.join(shapes)}",
-                (shapes[-1],),
-            )
-        if shapes != ["mesh"]:
+            allowed = f"one of {' and '.join(shapes)}"
+            raise Problem(f"is given beside {_article(shapes[0])}", allowed, (shapes[-1],))
+        shape = shapes[0] if shapes else "outline"
+        if shape != "mesh":
             for key in ("fixed", "free"):
                 if data.get(key):
                     raise Problem("names curves of no mesh", "a mesh beside it", (key,))
-        if shapes in (["slab"], ["half_round"]):
-            return cls._fill_stack(data, shapes[0], source)
-        if shapes == ["mesh"]:
-            if not isinstance(data["mesh"], (str, Path)):
-                raise Problem("is not a path", "the path of a .msh file", ("mesh",))
-            # in Python a path may be one that a result remembers: whether it is there turns out
-            # when it is read
-            in_document = context is not None or isinstance(data["mesh"], str)
-            data["mesh"] = source.resolve(data["mesh"]) if in_document else Path(data["mesh"])
-            if in_document and not is_file(data["mesh"]):
-                raise Problem(
-                    "is not an existing file",
-                    "the path of a .msh file, relative to the scene",
-                    ("mesh",),
-                )
+        if shape in ("slab", "half_round"):
+            for key in ("layers", "ridges"):
+                if data.get(key) not in (None, "none"):
+                    beside = f"is given beside {_article(shape)}, which has its own layers"
+                    raise Problem(beside, f"{shape}.layers", (key,), HIDE)
+            layers = data[shape].get("layers") if isinstance(data[shape], Mapping) else ()
+            layers = [
+                layer
+                for layer in (layers if isinstance(layers, (list, tuple)) else ())
+                if isinstance(layer, Mapping)
+            ]
+            return cls._fill_plain(data, [(layer.get("name"), layer) for layer in layers], source)
+        if shape == "mesh":
+            data["mesh"] = cls._mesh(data["mesh"], context)
             layers = data.get("layers")
             if isinstance(layers, Mapping) and not set(layers) <= set(_FINGER):
-                data["layers"] = _Own(layers)
-                left_out = [
-                    f"poisson_ratio of {name}: 0.48"
-                    for name, layer in layers.items()
-                    if _lacks(layer, "poisson_ratio")
-                ]
-                return cls._fill_plain(data, left_out, source)
+                data["layers"] = _OwnLayers(layers)
+                return cls._fill_plain(data, layers.items(), source)
         else:
             data.setdefault("outline", DEFAULT_SPECIMEN)
         taken = [
-            key for key in ("layers", "outline", "prony", "contact_length") if key not in given
+            key
+            for key in ("layers", "outline", "prony", "contact_length")
+            if key not in given and not (key == "outline" and shape == "mesh")
         ]
-        if shapes == ["mesh"]:
-            taken.remove("outline")
         if isinstance(data.get("layers"), Mapping):
             data.setdefault("stated", tuple(data["layers"]))
             taken = [name for name in _FINGER[1:] if name not in data["layers"]] + taken
@@ -749,47 +709,40 @@ class Specimen(Strict):
         data.setdefault("prony", DEFAULT_SPECIMEN)
         if "moduli" not in data:
             named = data["layers"] if isinstance(data["layers"], str) else DEFAULT_SPECIMEN
-            data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(
-                DEFAULT_SPECIMEN, "moduli"
-            )
+            moduli = source.specimen(named, ("layers",)).moduli
+            data["moduli"] = moduli or source.part(DEFAULT_SPECIMEN, "moduli")
         if "contact_length" not in data:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
         return data
 
-    @classmethod
-    def _fill_stack(cls, data: dict[str, Any], shape: str, source: Source) -> dict[str, Any]:
-        """What a slab or a half-round leaves out; nothing but the contact length is the
-        thesis's.
+    @staticmethod
+    def _mesh(name: Any, context: Any) -> Path:
+        """The absolute path of the mesh that a document names.
+
+        In Python a path may be one that a result remembers: whether it is there turns out when it
+        is read.
         """
-        for key in ("layers", "ridges"):
-            if data.get(key) not in (None, "none"):
-                raise Problem(
-                    f"is given beside {_article(shape)}, which has its own layers",
-                    f"{shape}.layers",
-                    (key,),
-                    HIDE,
-                )
-        stack = data[shape]
-        layers = (stack.get("layers") if isinstance(stack, Mapping) else None) or ()
-        named = (
-            [layer for layer in layers if isinstance(layer, Mapping)]
-            if isinstance(layers, (list, tuple))
-            else []
-        )
-        left_out = [
-            f"poisson_ratio of {layer.get('name')}: 0.48"
-            for layer in named
-            if _lacks(layer, "poisson_ratio")
-        ]
-        return cls._fill_plain(data, left_out, source)
+        key = ("mesh",)
+        if not isinstance(name, (str, Path)):
+            raise Problem("is not a path", "the path of a .msh file", key)
+        if context is None and isinstance(name, Path):
+            return name
+        path = source_of(context).resolve(name)
+        if not is_file(path):
+            allowed = "the path of a .msh file, relative to the scene"
+            raise Problem("is not an existing file", allowed, key)
+        return path
 
     @classmethod
-    def _fill_plain(
-        cls, data: dict[str, Any], left_out: list[str], source: Source
-    ) -> dict[str, Any]:
-        """Layers under names of their own do not relax unless told, and their moduli are then those
-        of the long term.
+    def _fill_plain(cls, data: dict[str, Any], layers: Any, source: Source) -> dict[str, Any]:
+        """Layers under names of their own do not relax unless told, their moduli are then those of
+        the long term, and nothing but the contact length is the thesis's.
         """
+        left_out = [
+            f"poisson_ratio of {name}: 0.48"
+            for name, layer in layers
+            if isinstance(layer, Mapping) and "poisson_ratio" not in layer
+        ]
         if data.get("prony") is None:
             data["prony"] = ()
             left_out.append("prony: none, elastic")
@@ -798,9 +751,7 @@ class Specimen(Strict):
         data.setdefault("moduli", "long_term")
         if data.get("contact_length") is None:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
-            left_out.append(
-                f"contact_length: {format_quantity(data['contact_length'], 'length')}, {DEFAULT_SPECIMEN}"
-            )
+            left_out.append(f"contact_length: {_mm(data['contact_length'])}, {DEFAULT_SPECIMEN}")
         data.setdefault("assumed", tuple(left_out))
         return data
 
@@ -818,20 +769,16 @@ class Specimen(Strict):
         """Material of each layer by its name, outside to inside."""
         if self.stack is not None:
             return {layer.name: layer for layer in self.stack.layers}
-        if isinstance(self.layers, Layers):
-            return {
-                name: layer for name in _FINGER if (layer := getattr(self.layers, name)) is not None
-            }
-        return self.layers
+        if not isinstance(self.layers, Layers):
+            return self.layers
+        return {name: layer for name, layer in self.layers if layer is not None}
 
     def material(self, name: str) -> Layer:
         """Material of a layer; an external mesh may part the stratum corneum where the scene does
         not.
         """
         known = self.materials
-        return (
-            known["epidermis"] if name == "stratum_corneum" and name not in known else known[name]
-        )
+        return known["epidermis" if name == "stratum_corneum" and name not in known else name]
 
     @property
     def soft_thickness(self) -> float | None:
@@ -847,34 +794,22 @@ class Specimen(Strict):
 
     @model_validator(mode="after")
     def _check(self) -> Specimen:
-        if sum(getattr(self, shape) is not None for shape in _SHAPES) != 1 or (
-            self.layers is None
-        ) != (self.stack is not None):
-            raise Problem(
-                "is missing", "one of outline, mesh, slab and half_round", ("outline",), HIDE
-            )
-        if self.outline is not None and self.layers.stratum_corneum is not None:
-            outline = self.outline
+        shapes = sum(getattr(self, shape) is not None for shape in _SHAPES)
+        if shapes != 1 or (self.layers is None) == (self.stack is None):
+            allowed = "one of outline, mesh, slab and half_round"
+            raise Problem("is missing", allowed, ("outline",), HIDE)
+        outline = self.outline
+        if outline is not None and self.layers.stratum_corneum is not None:
             if outline.stratum_corneum_thickness > outline.epidermis_thickness:
-                allowed = f"up to {format_quantity(outline.epidermis_thickness, 'length')}"
                 raise Problem(
                     "is more than the epidermis it belongs to",
-                    allowed,
+                    f"up to {_mm(outline.epidermis_thickness)}",
                     ("outline", "stratum_corneum_thickness"),
                 )
         _check_prony(self.prony)
         if self.ridges is not None:
             self._check_ridges()
         return self
-
-    @model_serializer(mode="wrap")
-    def _without_nothing(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        data = handler(self)
-        return {
-            key: value
-            for key, value in data.items()
-            if value or key not in ("slab", "half_round", "fixed", "free", "layers")
-        }
 
     @field_serializer("ridges", mode="wrap")
     def _named_ridges(self, ridges: Ridges | None, handler: SerializerFunctionWrapHandler) -> Any:
@@ -884,17 +819,12 @@ class Specimen(Strict):
         if self.outline is None:
             raise Problem("are given beside a mesh, which has its own", "none", ("ridges",), HIDE)
         inner, outline = self.ridges.inner, self.outline
-        room = outline.epidermis_thickness - (
-            outline.stratum_corneum_thickness if self.layers.stratum_corneum else 0.0
-        )
-        room = min(room, outline.dermis_thickness)
-        if inner.height >= 0.7 * room:
-            allowed = (
-                f"less than {format_quantity(0.7 * room, 'length')}, 0.7 of epidermis and dermis"
-            )
+        corneum = outline.stratum_corneum_thickness if self.layers.stratum_corneum else 0.0
+        room = 0.7 * min(outline.epidermis_thickness - corneum, outline.dermis_thickness)
+        if inner.height >= room:
+            allowed = f"less than {_mm(room)}, 0.7 of epidermis and dermis"
             raise Problem("is too high for the layers", allowed, ("ridges", "inner", "height"))
         if self.ridges.half_width + inner.pitch >= outline.half_width:
-            allowed = f"less than {format_quantity(outline.half_width - inner.pitch, 'length')}"
-            raise Problem(
-                "and a pitch are wider than the section", allowed, ("ridges", "half_width")
-            )
+            problem = "plus one pitch is more than half of the section's width"
+            allowed = f"less than {_mm(outline.half_width - inner.pitch)}"
+            raise Problem(problem, allowed, ("ridges", "half_width"))

@@ -2,80 +2,62 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from importlib import import_module
+from typing import Any
 
-_HOME = {
-    "OutlineCurve": "fingerpad.specimen.outline",
-    "OutlineError": "fingerpad.specimen.outline",
-    "MeshError": "fingerpad.specimen.pad",
-    "MeshSize": "fingerpad.specimen.pad",
-    "PadMesh": "fingerpad.specimen.pad",
-    "build_pad_mesh": "fingerpad.specimen.build",
-    "count_nodes": "fingerpad.specimen.build",
-    "skin_chain": "fingerpad.specimen.pad",
-    "read_pad_mesh": "fingerpad.specimen.files",
-    "write_pad": "fingerpad.specimen.files",
-    "quality_of": "fingerpad.specimen.quality",
-    "shortest_edge": "fingerpad.specimen.quality",
-    "quality_table": "fingerpad.specimen.quality",
-    "RidgedPad": "fingerpad.specimen.ridges",
-    "ridge_resolution": "fingerpad.specimen.layered",
-}
+from fingerpad.specimen.build import build_pad_mesh, count_nodes, size_of
+from fingerpad.specimen.files import read_pad_mesh, read_specimen_mesh, write_pad
+from fingerpad.specimen.layered import ridge_resolution
+from fingerpad.specimen.outline import OutlineCurve, OutlineError
+from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh, skin_chain
+from fingerpad.specimen.quality import quality_of, quality_table, shortest_edge
+from fingerpad.specimen.ridges import RidgedPad
+from fingerpad.specimen.stacks import build_stack_mesh
 
-__all__ = ["mesh_for", *_HOME]
-
-
-def __getattr__(name: str):
-    if name in _HOME:
-        return getattr(import_module(_HOME[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-@lru_cache(maxsize=64)  # of a sweep many scenes may have the same mesh
-def _counted_layers(*layered) -> tuple[int, float]:
-    from fingerpad.specimen.build import count_nodes, smallest_edge
-
-    return count_nodes(*layered), smallest_edge(*layered)
+__all__ = [
+    "MeshError",
+    "MeshSize",
+    "OutlineCurve",
+    "OutlineError",
+    "PadMesh",
+    "RidgedPad",
+    "build_pad_mesh",
+    "count_nodes",
+    "counted",
+    "mesh_for",
+    "quality_of",
+    "quality_table",
+    "read_pad_mesh",
+    "ridge_resolution",
+    "shortest_edge",
+    "skin_chain",
+    "write_pad",
+]
 
 
-def counted(specimen, size, ridges) -> tuple[int, float]:
-    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None),
-    a slab or a half-round.
+def counted(specimen: Any, size: MeshSize, ridges: Any) -> tuple[int, float]:
+    """Number of nodes and shortest edge (m) of the mesh of an outline (with `ridges` or None), a
+    slab or a half-round.
     """
     if specimen.stack is not None:
-        from fingerpad.specimen.quality import shortest_edge
-        from fingerpad.specimen.stacks import build_stack_mesh
-
         mesh = build_stack_mesh(specimen.stack, size)
         return len(mesh.points), shortest_edge(mesh)
-    return _counted_layers(
-        specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None
-    )
+    return size_of(specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None)
 
 
-def mesh_for(scene, plan):
-    """The mesh of a scene: its external mesh if it names one, else its outline, slab or half-round
+def mesh_for(scene: Any, plan: Any) -> PadMesh:
+    """The mesh of a scene: the external mesh it names, or else its outline, slab or half-round
     meshed as the plan says.
 
     Raises
     ------
-    OutlineError, MeshError : see `build_pad_mesh`, `build_stack_mesh` and `read_pad_mesh`.
+    OutlineError, MeshError
+        See `build_pad_mesh`, `build_stack_mesh` and `read_pad_mesh`.
     """
-    if scene.specimen.mesh is not None:
-        from fingerpad.specimen.files import read_specimen_mesh
-
-        return read_specimen_mesh(scene.specimen)
-    if scene.specimen.stack is not None:
-        from fingerpad.specimen.stacks import build_stack_mesh
-
-        return build_stack_mesh(scene.specimen.stack, plan.mesh_size)
-    from fingerpad.specimen.build import build_pad_mesh
-
     specimen = scene.specimen
-    return build_pad_mesh(
-        specimen.outline,
-        plan.mesh_size,
-        plan.parts(scene).ridges,
-        specimen.layers.stratum_corneum is not None,
-    )
+    if specimen.mesh is not None:
+        return read_specimen_mesh(specimen)
+    if specimen.stack is not None:
+        return build_stack_mesh(specimen.stack, plan.mesh_size)
+    ridges = plan.parts(scene).ridges
+    corneum = specimen.layers.stratum_corneum is not None
+    return build_pad_mesh(specimen.outline, plan.mesh_size, ridges, corneum)

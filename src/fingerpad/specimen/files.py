@@ -17,12 +17,12 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fingerpad.files import is_file, read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.gmsh_worker import GmshError, ask
 from fingerpad.specimen.judge import check_joined, check_skin
-from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import (
     HELD,
     OPTIONAL,
@@ -46,8 +46,10 @@ def write_pad(mesh: PadMesh, path: str | Path) -> None:
     """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all.
 
     Raises
-    ------ OSError : the file cannot be written, or not to its end (gmsh itself does not say that a
-    disk is full).
+    ------
+    OSError
+        The file cannot be written, or not to its end (gmsh itself does not say that a disk is
+        full).
     """
     write_atomically(path, lambda partial: _write(mesh, partial, path))
 
@@ -56,10 +58,9 @@ def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
     curves = [
         (name, LINES[facets.shape[1]], facets.ravel() + 1) for name, facets in mesh.curves.items()
     ]
-    kind, layers = KINDS[mesh.element].gmsh, range(len(mesh.regions))
     surfaces = [
-        (mesh.regions[layer], kind, mesh.cells[mesh.region == layer].ravel() + 1)
-        for layer in layers
+        (name, KINDS[mesh.element].gmsh, mesh.cells[mesh.region == layer].ravel() + 1)
+        for layer, name in enumerate(mesh.regions)
     ]
     try:
         ask("write", str(partial.absolute()), mesh.points * 1e3, curves, surfaces)
@@ -69,39 +70,31 @@ def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
 
-def _require_mesh(path: Path) -> None:
+def _check_file(path: Path) -> None:
     """`MeshError` for what is no mesh, or is too large, before gmsh sees it."""
     try:
         content = read_input(path, "mesh")
     except (OSError, ValueError) as error:
-        raise MeshError(
-            f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}"
-        ) from None
+        reason = getattr(error, "strerror", None) or error
+        raise MeshError(f"cannot be read: {reason}") from None
     if not content.startswith(b"$MeshFormat"):
-        raise MeshError(f"{path}: is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
+        raise MeshError("is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
     for section, most in MOST.items():
         count = _count(content, section)
         if count > most:
-            raise MeshError(f"{path}: has {count} {section.lower()}; up to {most} are allowed")
+            raise MeshError(f"has {count} {section.lower()}; up to {most} are allowed")
 
 
 def _count(content: bytes, section: str) -> int:
     """How many nodes or elements a .msh file says that it has; 0 where it says nothing that can be
     read.
     """
-    mark = f"\n${section}".encode()
-    start = content.find(mark)
-    line = (
-        content[start + len(mark) : start + len(mark) + 200].lstrip(b"\r").removeprefix(b"\n")
-        if start >= 0
-        else b""
-    )
+    _, found, rest = content.partition(f"\n${section}".encode())
+    line = rest[:200].lstrip(b"\r").removeprefix(b"\n") if found else b""
     try:
         numbers = [int(word) for word in line.split(b"\n", 1)[0].split()]
-    except ValueError:
-        numbers = (
-            [int(word) for word in np.frombuffer(line[:32], "<u8")] if len(line) >= 32 else []
-        )  # binary, 4.1
+    except ValueError:  # binary, 4.1
+        numbers = np.frombuffer(line[:32], "<u8").tolist() if len(line) >= 32 else []
     return max(numbers[:2], default=0)
 
 
@@ -109,80 +102,77 @@ def _listed(names) -> str:
     return ", ".join(names) or "none"
 
 
-def _layers(path: Path, surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...]:
+def _layers(surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...]:
     """Names of the layers: the wanted ones, or else a finger's, or else all there are."""
     for name in wanted:
         if name not in surfaces:
             raise MeshError(
-                f"{path}: layer {name} is no surface of the mesh; its physical surfaces are {_listed(surfaces)}"
+                f"layer {name} is no surface of the mesh; "
+                f"its physical surfaces are {_listed(surfaces)}"
             )
     if not surfaces:
-        raise MeshError(f"{path}: no surface is named; each layer must be a physical surface")
+        raise MeshError("no surface is named; each layer must be a physical surface")
     finger = all(name in surfaces for name in REGIONS)
     known = tuple(name for name in (*OPTIONAL, *REGIONS) if name in surfaces)
     return tuple(wanted) or (known if finger else tuple(surfaces))
 
 
-def _held(path: Path, curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str, ...]:
+def _held(curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str, ...]:
     """Names of the curves that are held."""
     if SKIN not in curves:
         raise MeshError(
-            f"{path}: curve {SKIN} is missing; a physical curve {SKIN} must be there, among {_listed(curves)}"
+            f"curve {SKIN} is missing; a physical curve {SKIN} must be there, "
+            f"among {_listed(curves)}"
         )
     for key, names in (("fixed", fixed), ("free", free)):
         for name in names:
             if name not in curves:
                 raise MeshError(
-                    f"{path}: {key}: {name} is no curve of the mesh; its physical curves are {_listed(curves)}"
+                    f"{key}: {name} is no curve of the mesh; "
+                    f"its physical curves are {_listed(curves)}"
                 )
-    held = tuple(
-        dict.fromkeys([*(name for name in HELD if name in curves and name not in free), *fixed])
-    )
-    if not held:
+    held = [name for name in HELD if name in curves and name not in free]
+    if not held and not fixed:
         others = _listed(name for name in curves if name != SKIN)
         raise MeshError(
-            f"{path}: no curve is held; a physical curve {', '.join(HELD)}, or one named by specimen.fixed, must be there, "
-            f"among {others}"
+            f"no curve is held; a physical curve {', '.join(HELD)}, "
+            f"or one named by specimen.fixed, must be there, among {others}"
         )
-    return held
+    return tuple(dict.fromkeys([*held, *fixed]))
 
 
 def _gather_cells(
-    path: Path, surfaces: dict, regions: tuple[str, ...], count: int
+    surfaces: dict, regions: tuple[str, ...], count: int
 ) -> tuple[str, np.ndarray, np.ndarray]:
     """Element kind, node tags (elements, nodes) and region (elements,) of all layers."""
-    kinds, cells, numbers, region = set(), [], [], []
-    for index, name in enumerate(regions):
-        for kind, tags, nodes in surfaces[name]:
-            if kind not in _ELEMENTS:
-                raise MeshError(
-                    f"{path}: surface {name} has elements of gmsh's type {kind}; allowed are triangles of 3 "
-                    "or 6 nodes and quads of 4, 8 or 9"
-                )
-            kinds.add(_ELEMENTS[kind])
-            cells.append(nodes.reshape(len(tags), -1))
-            numbers.append(tags)
-            region.append(np.full(len(tags), index, dtype=np.int8))
-    if not cells:
+    blocks = [(index, *block) for index, name in enumerate(regions) for block in surfaces[name]]
+    for index, kind, *_ in blocks:
+        if kind not in _ELEMENTS:
+            raise MeshError(
+                f"surface {regions[index]} has elements of gmsh's type {kind}; "
+                "allowed are triangles of 3 or 6 nodes and quads of 4, 8 or 9"
+            )
+    if not blocks:
         raise MeshError(
-            f"{path}: no element is in {_listed(regions)}; each layer must be a physical surface with elements"
+            f"no element is in {_listed(regions)}; "
+            "each layer must be a physical surface with elements"
         )
+    kinds = sorted({_ELEMENTS[kind] for _, kind, *_ in blocks})
     if len(kinds) > 1:
-        raise MeshError(
-            f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed"
-        )
-    tags = np.concatenate(numbers)
+        raise MeshError(f"mixes {' and '.join(kinds)}; one kind of element is allowed")
+    tags = np.concatenate([tags for _, _, tags, _ in blocks])
     if len(np.unique(tags)) < len(tags):
-        raise MeshError(
-            f"{path}: an element is in two of {', '.join(regions)}; one layer each is allowed"
-        )
+        raise MeshError(f"an element is in two of {', '.join(regions)}; one layer each is allowed")
     if len(tags) < count:
         others = [name for name in surfaces if name not in regions]
         more = f" (the mesh also has {', '.join(others)})" if others else ""
         raise MeshError(
-            f"{path}: {count - len(tags)} surface elements are in none of {', '.join(regions)}; each must be in one{more}"
+            f"{count - len(tags)} surface elements are in none of {', '.join(regions)}; "
+            f"each must be in one{more}"
         )
-    return kinds.pop(), np.concatenate(cells), np.concatenate(region)
+    cells = [nodes.reshape(len(tags), -1) for _, _, tags, nodes in blocks]
+    region = np.repeat([index for index, *_ in blocks], [len(tags) for _, _, tags, _ in blocks])
+    return kinds[0], np.concatenate(cells), region.astype(np.int8)
 
 
 def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -193,7 +183,7 @@ def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.
     return np.concatenate((points, centre)), np.column_stack((cells, number))
 
 
-def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _facets(mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The named boundary facets, material on the right, from the end nodes of the file's line
     elements.
     """
@@ -223,36 +213,27 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
         there[there] = (boundary[chosen[there]] == wanted[there]) & free[chosen[there]]
         if not there.all():
             raise MeshError(
-                f"{path}: curve {name} has an edge at {place(wanted[np.argmin(there)])} that is not on the boundary, or in "
-                f"two curves; {', '.join(pairs)} must be boundary edges, each in one curve"
+                f"curve {name} has an edge at {place(wanted[np.argmin(there)])} "
+                "that is not on the boundary, or in two curves; "
+                f"{', '.join(pairs)} must be boundary edges, each in one curve"
             )
         free[chosen] = False
         curves[name] = facets(chosen)
     if free.any():
-        _require_joined(
-            path,
-            mesh,
-            np.column_stack(np.divmod(boundary[free], n)),
-            lambda pair: place(pair[0] * n + pair[1]),
-        )
+        # two edges at one place are a gap between elements that do not share their nodes
+        middles = mesh.points[np.column_stack(np.divmod(boundary[free], n))].mean(axis=1)
+        double = KDTree(middles).query_pairs(_SAME_PLACE * np.ptp(mesh.points[:, 0]))
+        if double:
+            raise MeshError(
+                f"{2 * len(double)} edges, the first at {place(boundary[free][min(double)[0]])}, "
+                "lie twice at the same place; "
+                "elements must share their nodes (are the layers joined?)"
+            )
         curves[UNNAMED] = facets(np.flatnonzero(free))
     return curves
 
 
-def _require_joined(path: Path, mesh: PadMesh, pairs: np.ndarray, place) -> None:
-    """Two edges (m, 2) at one place are no boundary but a gap between elements that do not share
-    their nodes.
-    """
-    middles = mesh.points[pairs].mean(axis=1)
-    double = twins(middles, _SAME_PLACE * np.ptp(mesh.points[:, 0]))
-    if len(double):
-        raise MeshError(
-            f"{path}: {2 * len(double)} edges, the first at {place(pairs[double[0, 0]])}, lie twice at the same place; "
-            "elements must share their nodes (are the layers joined?)"
-        )
-
-
-def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
+def _in_order(skin: np.ndarray) -> np.ndarray:
     """The skin's facets from left to right, end to start."""
     follows = {start: index for index, start in enumerate(skin[:, 0].tolist())}
     first = set(follows) - set(skin[:, 1].tolist())
@@ -262,7 +243,7 @@ def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
         order.append(follows.pop(node))
         node = int(skin[order[-1], 1])
     if len(first) != 1 or follows:
-        raise MeshError(f"{path}: curve skin must be one line with two ends")
+        raise MeshError("curve skin must be one line with two ends")
     return skin[order]
 
 
@@ -272,37 +253,31 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     x = mesh.points[mesh.cells, 0]
     if ((x.min(axis=1) < -near) & (x.max(axis=1) > near)).any():
         return False
-    image = same_place(mesh.points * (-1.0, 1.0), mesh.points, near)
-    if image.min() < 0 or len(np.unique(image)) < len(image):
+    distance, image = KDTree(mesh.points).query(mesh.points * (-1.0, 1.0))
+    if distance.max() > near or len(np.unique(image)) < len(image):
         return False
 
-    def same(rows: np.ndarray, labels: np.ndarray) -> bool:
-        mine = np.column_stack((labels, np.sort(rows, axis=1)))
-        mirrored = np.column_stack((labels, np.sort(image[rows], axis=1)))
-        return np.array_equal(*(each[np.lexsort(each.T)] for each in (mine, mirrored)))
+    def rows(labels: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+        return np.unique(np.column_stack((labels, np.sort(nodes, axis=1))), axis=0)
 
-    return same(mesh.cells, mesh.region) and all(
-        same(facets, np.zeros(len(facets), dtype=int)) for facets in mesh.curves.values()
-    )
-
-
-def _require_mm(path: Path, places: np.ndarray) -> None:
-    width, low, high = float(np.ptp(places[:, 0])), *_WIDTHS
-    if not low <= width <= high:
-        guess = "metres?" if width < low else "micrometres?"
-        raise MeshError(f"{path}: the pad is {width:.3g} mm wide: coordinates must be mm; {guess}")
+    groups = [(mesh.region, mesh.cells)]
+    groups += [(np.zeros(len(facets), int), facets) for facets in mesh.curves.values()]
+    return all(np.array_equal(rows(*group), rows(group[0], image[group[1]])) for group in groups)
 
 
 def read_specimen_mesh(specimen) -> PadMesh:
     """The mesh a scene's specimen names, its surfaces checked against the layers' names, both ways.
 
     Parameters
-    ---------- specimen : has `mesh`, `materials` (by name), `stated` (names of the layers the scene
-    gives), `fixed` and `free`.
+    ----------
+    specimen : fingerpad.scenes.specimen.Specimen
+        Has `mesh`, `materials` (by name), `stated` (names of the layers the scene gives), `fixed`
+        and `free`.
 
     Raises
     ------
-    MeshError : see `read_pad_mesh`, or a surface has no material, or a layer is no surface.
+    MeshError
+        See `read_pad_mesh`, or a surface has no material, or a layer is no surface.
     """
     names = tuple(specimen.materials)
     own = () if set(names) <= {*OPTIONAL, *REGIONS} else names
@@ -310,13 +285,15 @@ def read_specimen_mesh(specimen) -> PadMesh:
     bare = [name for name in mesh.regions if name not in (*names, *OPTIONAL)]
     if bare:
         raise MeshError(
-            f"{specimen.mesh}: no material for {', '.join(bare)}; specimen.layers must name each surface of the mesh"
+            f"{specimen.mesh}: no material for {', '.join(bare)}; "
+            "specimen.layers must name each surface of the mesh"
         )
     for name in specimen.stated:
         if name not in mesh.regions:
             known = ", ".join(mesh.regions)
             raise MeshError(
-                f"{specimen.mesh}: layer {name} is no surface of the mesh; its physical surfaces are {known}"
+                f"{specimen.mesh}: layer {name} is no surface of the mesh; "
+                f"its physical surfaces are {known}"
             )
     return mesh
 
@@ -330,93 +307,103 @@ def read_pad_mesh(
     """Read a pad from a gmsh .msh file (mm).
 
     Parameters
-    ---------- layers : names of its physical surfaces, outside to inside. Left out they are
-    stratum_corneum (if it is there), epidermis,
-        dermis and fat where the mesh has these three, else whatever surfaces it has.
-    fixed : names of the physical curves that are held, beside bone, nail and base. free : of those
-    that are not (these
-        three may be among them). Boundary edges in none of these and not in the skin are free, as
-        the curve "unnamed".
+    ----------
+    path : path
+        The file.
+    layers : sequence of str
+        Names of its physical surfaces, outside to inside. Left out they are stratum_corneum (if it
+        is there), epidermis, dermis and fat where the mesh has these three, else whatever surfaces
+        it has.
+    fixed : sequence of str
+        Names of the physical curves that are held, beside bone, nail and base.
+    free : sequence of str
+        Names of those that are not (bone, nail and base may be among them). Boundary edges in none
+        of these and not in the skin are free, as the curve "unnamed".
 
     Returns
     -------
-    PadMesh in m, with the elements of the file (quad8 becomes quad9), and `symmetric` found out.
+    PadMesh
+        In m, with the elements of the file (quad8 becomes quad9), and `symmetric` found out.
 
     Raises
-    ------ MeshError : one line naming the file, what is wrong and what is allowed, when the file is
-    missing or unreadable, it has no
-        skin or nothing that is held, a name is none of its own, an element is of another kind, in
-        no layer, in two, or not counter-clockwise, the mesh is not plane, a curve is not on the
-        boundary, or coordinates cannot be mm.
+    ------
+    MeshError
+        One line naming the file, what is wrong and what is allowed: the file is missing or
+        unreadable, it has no skin or nothing that is held, a name is none of its own, an element is
+        of another kind, in no layer, in two, or not counter-clockwise, the mesh is not plane, a
+        curve is not on the boundary, or coordinates cannot be mm.
     """
     path = Path(path)
     if not is_file(path):
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
     state = path.stat()
-    return _read(
-        path,
-        (state.st_mtime_ns, state.st_size, state.st_ino),
-        tuple(layers),
-        tuple(fixed),
-        tuple(free),
-    )
+    state = state.st_mtime_ns, state.st_size, state.st_ino
+    return _read(path, state, tuple(layers), tuple(fixed), tuple(free))
 
 
 @lru_cache(maxsize=1)  # a plan looks at the mesh before it is solved on
-def _read(
-    path: Path,
-    state: tuple[int, ...],
+def _read(path: Path, state: tuple[int, ...], *names: tuple[str, ...]) -> PadMesh:
+    """`read_pad_mesh` of a file in a `state`."""
+    try:
+        _check_file(path)
+        return _mesh_of(*ask("read", str(path)), *names)
+    except GmshError as error:
+        raise MeshError(f"{path}: gmsh cannot read it ({error})") from None
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from None
+
+
+def _mesh_of(
+    tags: np.ndarray,
+    places: np.ndarray,
+    surfaces: dict,
+    lines: dict,
+    count: int,
     layers: tuple[str, ...],
     fixed: tuple[str, ...],
     free: tuple[str, ...],
 ) -> PadMesh:
-    """`read_pad_mesh` of a file in a `state`."""
-    _require_mesh(path)
-    try:
-        tags, places, surfaces, lines, count = ask("read", str(path))
-    except GmshError as error:
-        raise MeshError(f"{path}: gmsh cannot read it ({error})") from None
-    regions = _layers(path, surfaces, layers)
-    held = _held(path, lines, fixed, free)
-    element, cell_tags, region = _gather_cells(path, surfaces, regions, count)
+    """The mesh of what gmsh has read (see :func:`fingerpad.specimen.gmsh_worker.read`)."""
+    regions = _layers(surfaces, layers)
+    held = _held(lines, fixed, free)
+    element, cell_tags, region = _gather_cells(surfaces, regions, count)
 
     used = np.unique(cell_tags)
     order = np.argsort(tags)
     places = places[order[np.searchsorted(tags, used, sorter=order)]]
     size = np.ptp(places, axis=0).max()
     if not np.isfinite(places).all() or np.ptp(places[:, 2]) > _SAME_PLACE * size:
-        raise MeshError(f"{path}: nodes must be finite and lie in one plane, z = constant")
-    _require_mm(path, places)
-    points = (
-        places[:, :2].astype(float) / 1e3
-    )  # gmsh marks the order of bytes, of which netCDF4 would warn
+        raise MeshError("nodes must be finite and lie in one plane, z = constant")
+    width, (low, high) = float(np.ptp(places[:, 0])), _WIDTHS
+    if not low <= width <= high:
+        guess = "metres?" if width < low else "micrometres?"
+        raise MeshError(f"the pad is {width:.3g} mm wide: coordinates must be mm; {guess}")
+    # gmsh marks the order of bytes, of which netCDF4 would warn
+    points = places[:, :2].astype(float) / 1e3
     cells = np.searchsorted(used, cell_tags).astype(np.int32)
     if element == "quad8":
         points, cells = _with_centre(points, cells)
         element = "quad9"
 
-    mesh = counter_clockwise(
-        PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held)
-    )
-    check_orientation(mesh, str(path))
+    mesh = PadMesh(points, cells, element, region, {}, False, regions=regions, fixed=held)
+    mesh = counter_clockwise(mesh)
+    check_orientation(mesh)
     pairs = {}
     for name in dict.fromkeys((SKIN, *held, *free)):
         if not lines[name]:
             raise MeshError(
-                f"{path}: curve {name} has no edges; a curve along the elements' edges must be there"
+                f"curve {name} has no edges; a curve along the elements' edges must be there"
             )
-        ends = np.concatenate(
-            [nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]]
-        )
-        stray = ~np.isin(ends, used)
-        if stray.any():
+        ends = [nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]]
+        ends = np.concatenate(ends)
+        if not np.isin(ends, used).all():
             raise MeshError(
-                f"{path}: curve {name} has an edge of no element; curves follow the elements' edges"
+                f"curve {name} has an edge of no element; curves follow the elements' edges"
             )
         pairs[name] = np.searchsorted(used, ends)
-    curves = _facets(path, mesh, pairs)
-    curves[SKIN] = _in_order(path, curves[SKIN])
+    curves = _facets(mesh, pairs)
+    curves[SKIN] = _in_order(curves[SKIN])
     mesh = replace(mesh, curves=curves)
-    check_joined(mesh, str(path))
-    check_skin(mesh, str(path))
+    check_joined(mesh)
+    check_skin(mesh)
     return replace(mesh, symmetric=_is_symmetric(mesh))

@@ -19,6 +19,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ class GmshMissing(ImportError):
     """
 
 
-# --- the caller's side --------------------------------------------------------------------------------------------------
+# --- the caller's side --------------------------------------------------------------------------
 
 
 class _Worker:
@@ -83,7 +84,7 @@ class _Worker:
         if self._process is None or self._owner != os.getpid() or self._process.poll() is not None:
             self._owner = os.getpid()  # a forked child has pipes to a process that is not its own
             self._process = subprocess.Popen(
-                [sys.executable, "-m", __name__],
+                [sys.executable, "-P", __file__],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
@@ -111,7 +112,7 @@ ask = _WORKER.ask
 atexit.register(_WORKER.close)
 
 
-# --- the side of gmsh ---------------------------------------------------------------------------------------------------
+# --- the side of gmsh ---------------------------------------------------------------------------
 
 
 @contextlib.contextmanager
@@ -139,33 +140,13 @@ def rectangle(gmsh, columns: int, bands: tuple[int, ...]) -> np.ndarray:
         with pygmsh.geo.Geometry(init_argv=["fingerpad", "-v", "0"]) as geometry:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
-            ends = np.concatenate(([0], np.cumsum(bands)))
-            corners = [
-                (
-                    geometry.add_point((0.0, -float(y))),
-                    geometry.add_point((float(columns), -float(y))),
-                )
-                for y in ends
-            ]
-            across = [geometry.add_line(left, right) for left, right in corners]
-            for line in across:
-                geometry.set_transfinite_curve(line, columns + 1, "Progression", 1.0)
-            for band, count in enumerate(bands):
-                upper, lower = corners[band], corners[band + 1]
-                left, right = (
-                    geometry.add_line(upper[0], lower[0]),
-                    geometry.add_line(lower[1], upper[1]),
-                )
-                for line in (left, right):
+            for low, high in pairwise(accumulate(bands, initial=0)):
+                corners = [(0, -low), (0, -high), (columns, -high), (columns, -low)]
+                band = geometry.add_polygon(corners)
+                for line, count in zip(band.lines, 2 * (high - low, columns), strict=True):
                     geometry.set_transfinite_curve(line, count + 1, "Progression", 1.0)
-                surface = geometry.add_plane_surface(
-                    geometry.add_curve_loop([left, across[band + 1], right, -across[band]])
-                )
-                geometry.set_transfinite_surface(
-                    surface, "Left", [upper[0], lower[0], lower[1], upper[1]]
-                )
-                geometry.set_recombined_surfaces([surface])
-                geometry.add_physical(surface, f"band {band}")
+                geometry.set_transfinite_surface(band.surface, "Left", band.points)
+                geometry.set_recombined_surfaces([band.surface])
             grid = geometry.generate_mesh(dim=2, order=2)
     (quads,) = [block.data for block in grid.cells if block.type == "quad9"]
     return np.rint(2.0 * grid.points[:, :2] * (1.0, -1.0)).astype(np.int64)[quads]
@@ -195,9 +176,16 @@ def read(gmsh, path: str) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     """What is in a .msh file, nodes by their tags.
 
     Returns
-    ------- Node tags (n,), their places (n, 3), surfaces as {name: [(gmsh's type, element tags,
-    node tags)]}, curves likewise, and the number of all surface elements, in a group or not. A
-    group without a name has its number.
+    -------
+    tags : (n,) array
+        Node tags.
+    places : (n, 3) array
+        Where the nodes are.
+    surfaces, curves : dict
+        Name -> list of (gmsh's type, element tags, node tags). A group without a name has its
+        number.
+    count : int
+        Number of all surface elements, in a group or not.
     """
     with _session(gmsh), tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
         # alone, for gmsh runs what stands in a .opt file beside a mesh
@@ -236,7 +224,10 @@ def _serve() -> None:
     try:
         import gmsh
     except (ImportError, OSError) as error:
-        missing = f"gmsh cannot be loaded: {error}; on Debian: sudo apt-get install -y libglu1-mesa libxcursor1 libxinerama1"
+        missing = (
+            f"gmsh cannot be loaded: {error}; "
+            "on Debian: sudo apt-get install -y libglu1-mesa libxcursor1 libxinerama1"
+        )
     while True:
         try:
             task, arguments = pickle.load(questions)

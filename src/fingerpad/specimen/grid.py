@@ -4,10 +4,10 @@ positions on the section.
 
 from __future__ import annotations
 
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from fingerpad.specimen.outline import OutlineCurve, bisect
 from fingerpad.specimen.pad import MeshSize
@@ -21,7 +21,7 @@ def divide(grid: np.ndarray, edge: np.ndarray, low: float, high: float, rounding
     """Division points of [low, high] such that edges follow the wanted `edge` given on `grid`."""
     part = (grid >= low) & (grid <= high)
     s, density = grid[part], 1.0 / edge[part]
-    number = np.concatenate(([0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))))
+    number = cumulative_trapezoid(density, s, initial=0.0)
     count = max(1, int(rounding(number[-1] - 1e-6)))
     points = np.interp(np.linspace(0.0, number[-1], count + 1), number, s)
     points[0], points[-1] = low, high
@@ -51,50 +51,70 @@ def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarra
     return np.unique(np.clip(grid, 0.0, length))
 
 
-@lru_cache(maxsize=16)
+def graded(grid: np.ndarray, wanted, ends, focus, growth: float, rounding) -> np.ndarray:
+    """Division points of the range between the first and the last of ``ends``, with those among
+    them.
+
+    Parameters
+    ----------
+    grid : (n,) array
+        Places (m) at which edges are asked for.
+    wanted : callable
+        Places -> largest edges (m) there. Each part between two ends has at least one edge.
+    ends : sequence of float
+        Places (m) of boundaries, ascending.
+    focus : sequence of (float, float)
+        Places (m) and the edge (m) there.
+    growth : float
+        Largest ratio of neighbouring edges.
+    rounding : callable
+        Start of a part -> how its number of edges is made whole.
+    """
+    grid = np.union1d(grid, [*ends, *(s for s, _ in focus)])
+    edge = wanted(grid)
+    for low, high in pairwise(ends):
+        edge = np.where((grid >= low) & (grid <= high), np.minimum(edge, high - low), edge)
+    for s, near in focus:
+        edge = np.where(grid == s, np.minimum(edge, near), edge)
+    edge = limit_growth(grid, edge, growth)
+    parts = [divide(grid, edge, low, high, rounding(low)) for low, high in pairwise(ends)]
+    return np.concatenate([part[:-1] for part in parts] + [ends[-1:]])
+
+
 def columns_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim.
 
     The end of the fine zone, the widest place (where the curvature jumps) and the nail's rim are
     boundaries.
     """
-    breaks = [
-        0.0,
-        float(curve.arc_length(0.5 * np.pi)[0]),
-        float(curve.arc_length(curve.theta_at_x(curve.outline.nail_half_width, lower=True))[0]),
-        curve.length,
-    ]
-    nail = breaks[2]
+    outline = curve.outline
+    nail = float(curve.arc_length(curve.theta_at_x(outline.nail_half_width, lower=True))[0])
+    breaks = [0.0, float(curve.arc_length(0.5 * np.pi)[0]), nail, curve.length]
     fine = min(np.ceil(size.fine_half_width / size.skin_edge - 1e-6) * size.skin_edge, curve.length)
     nearest = min(breaks, key=lambda s: abs(s - fine))
     if abs(nearest - fine) < size.skin_edge:
         fine = nearest
     else:
         breaks = sorted([*breaks, fine])
-    half_width = curve.outline.half_width
-    focus = [
-        (float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge)
-        for x, edge in size.focus
-    ]
+    x = np.minimum(np.abs([x for x, _ in size.focus]), outline.half_width)
+    places = curve.arc_length(curve.theta_at_x(x)).tolist()
+    focus = [(s, edge) for s, (_, edge) in zip(places, size.focus, strict=True)]
+
+    def wanted(s):
+        radius = 1.0 / curve.curvature(curve.theta_at(s))
+        edge = np.minimum(_LARGEST_TURN * radius, radius - curve.layer_depths[-1])
+        edge = np.minimum(edge, size.coarse_edge or _COARSEST * size.skin_edge)
+        return np.where(s <= fine, np.minimum(edge, size.skin_edge), edge)
 
     smallest = min([size.skin_edge, *(edge for _, edge in focus)])
-    grid = _grid_along(curve.length, smallest, [s for s, _ in focus])
-    grid = np.union1d(grid, [*breaks, *(s for s, _ in focus)])
-    radius = 1.0 / curve.curvature(curve.theta_at(grid))
-    edge = np.minimum(_LARGEST_TURN * radius, radius - curve.layer_depths[-1])
-    edge = np.minimum(edge, size.coarse_edge or _COARSEST * size.skin_edge)
-    edge = np.where(grid <= fine, np.minimum(edge, size.skin_edge), edge)
-    for low, high in pairwise(breaks):
-        edge = np.where((grid >= low) & (grid <= high), np.minimum(edge, high - low), edge)
-    for s, wanted in focus:
-        edge = np.where(grid == s, np.minimum(edge, wanted), edge)
-    edge = limit_growth(grid, edge, size.growth)
-
-    parts = [
-        divide(grid, edge, low, high, np.ceil if low <= fine else np.round)
-        for low, high in pairwise(breaks)
-    ]
-    columns = np.concatenate([part[:-1] for part in parts] + [[curve.length]])
+    columns = graded(
+        _grid_along(curve.length, smallest, places),
+        wanted,
+        breaks,
+        focus,
+        size.growth,
+        lambda low: np.ceil if low <= fine else np.round,
+    )
     return columns, int(np.searchsorted(columns, nail))
 
 
@@ -107,21 +127,13 @@ def _layer_rows(low: float, high: float, first: float, size: MeshSize) -> np.nda
     return divide(depth, edge, low, high, np.round)
 
 
-def rows_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, tuple[int, int], int, float]:
-    """Depths of the skin's row boundaries, rows above its interfaces, rows in the fat, first fat
-    edge.
-    """
+def plain_rows(curve: OutlineCurve, size: MeshSize) -> np.ndarray:
+    """Depths of the row boundaries above the fat, where there are no ridges."""
     middle, inner = curve.layer_depths
     first = min(size.skin_radial_edge or size.layer_edge, size.layer_edge)
-    epidermis = _layer_rows(0.0, middle, first, size)
     reached = min(first + np.log(size.growth) * middle, size.layer_edge)
-    dermis = _layer_rows(middle, inner, reached, size)
-    rows = np.concatenate((epidermis[:-1], dermis))
-    return (
-        rows,
-        (len(epidermis) - 1, len(rows) - 1),
-        *fat_rows_of(curve, size, dermis[-1] - dermis[-2]),
-    )
+    epidermis = _layer_rows(0.0, middle, first, size)
+    return np.append(epidermis[:-1], _layer_rows(middle, inner, reached, size))
 
 
 def fat_rows_of(curve: OutlineCurve, size: MeshSize, above: float) -> tuple[int, float]:
@@ -161,15 +173,15 @@ def with_middles(values: np.ndarray) -> np.ndarray:
 
 
 def node_positions(
-    curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float
-):
-    """Positions of the right half's nodes, shape (2 columns + 1, 2 rows + 1, 2), in m."""
-    theta = curve.theta_at(with_middles(columns))
-    skin = [curve.point(theta, depth) for depth in with_middles(rows)]
-    inner = skin[-1]
+    curve: OutlineCurve, columns: np.ndarray, depth: float, rows: int, edge: float
+) -> np.ndarray:
+    """Positions (2 columns + 1, 2 rows + 1, 2) in m of the nodes in the fat of the right half.
+
+    The fat begins ``depth`` m below the skin; its first edge is ``edge`` m.
+    """
+    inner = curve.point(curve.theta_at(with_middles(columns)), depth)
     bone = curve.bone_point(curve.bone_foot(inner))
-    fraction = _fat_fractions(np.hypot(*(bone - inner).T), fat_rows, fat_edge)
-    fraction = with_middles(fraction)[:, 1:, None]
+    fraction = with_middles(_fat_fractions(np.hypot(*(bone - inner).T), rows, edge))[..., None]
     fat = (1.0 - fraction) * inner[:, None, :] + fraction * bone[:, None, :]
-    fat[:, -1] = bone
-    return np.concatenate((np.stack(skin, axis=1), fat), axis=1)
+    fat[:, 0], fat[:, -1] = inner, bone
+    return fat

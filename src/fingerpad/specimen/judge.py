@@ -19,7 +19,7 @@ _ON = 1e-3
 _JOIN = "allowed: layers that share their nodes (one curve for both, or gmsh's fragment)"
 
 
-def check_joined(mesh: PadMesh, name: str) -> None:
+def check_joined(mesh: PadMesh) -> None:
     """Refuse a mesh that is not one piece, or whose elements lie beside each other without sharing
     their nodes.
 
@@ -35,12 +35,12 @@ def check_joined(mesh: PadMesh, name: str) -> None:
     number = number.reshape(-1)
     order = np.argsort(number, kind="stable")
     shared = order[uses[number[order]] == 2].reshape(-1, 2)
-    _check_pieces(mesh, name, owner[shared])
+    _check_pieces(mesh, owner[shared])
     once = uses[number] == 1
-    _check_boundary(mesh, name, edges[once], owner[once])
+    _check_boundary(mesh, edges[once], owner[once])
 
 
-def _check_pieces(mesh: PadMesh, name: str, neighbours: np.ndarray) -> None:
+def _check_pieces(mesh: PadMesh, neighbours: np.ndarray) -> None:
     count = len(mesh.cells)
     links = coo_array((np.ones(len(neighbours)), neighbours.T), shape=(count, count))
     pieces, piece = connected_components(links, directed=False)
@@ -57,12 +57,12 @@ def _check_pieces(mesh: PadMesh, name: str, neighbours: np.ndarray) -> None:
         else "shares no node with the rest"
     )
     raise MeshError(
-        f"{name}: is in {pieces} pieces: the one around ({x:.3f}, {y:.3f}) mm, {len(cells)} elements of layer {layers}, {how}; "
-        + _JOIN
+        f"is in {pieces} pieces: the one around ({x:.3f}, {y:.3f}) mm, "
+        f"{len(cells)} elements of layer {layers}, {how}; {_JOIN}"
     )
 
 
-def _check_boundary(mesh: PadMesh, name: str, edges: np.ndarray, owner: np.ndarray) -> None:
+def _check_boundary(mesh: PadMesh, edges: np.ndarray, owner: np.ndarray) -> None:
     """Boundary edges must not cross or touch each other but at common nodes, nor part by less than
     a slit there.
     """
@@ -83,8 +83,9 @@ def _check_boundary(mesh: PadMesh, name: str, edges: np.ndarray, owner: np.ndarr
             dict.fromkeys(mesh.regions[mesh.region[owner[i]]] for i in (first[k], second[k]))
         )
         raise MeshError(
-            f"{name}: boundary edges of layer {layers} lie on each other at ({x:.3f}, {y:.3f}) mm "
-            f"({int(wrong.sum())} such pairs): a node of one element is on an edge of another; {_JOIN}"
+            f"boundary edges of layer {layers} lie on each other at ({x:.3f}, {y:.3f}) mm "
+            f"({int(wrong.sum())} such pairs): "
+            f"a node of one element is on an edge of another; {_JOIN}"
         )
 
 
@@ -112,18 +113,15 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def _touch(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether segments (n, 2, 2) without a common node cross, or one's end lies on the other."""
     wa, wb = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0]
-    sides = (
-        [_cross(wa, b[:, k] - a[:, 0]) for k in (0, 1)],
-        [_cross(wb, a[:, k] - b[:, 0]) for k in (0, 1)],
-    )
-    out = (sides[0][0] * sides[0][1] < 0) & (sides[1][0] * sides[1][1] < 0)
+    to_b = [_cross(wa, b[:, k] - a[:, 0]) for k in (0, 1)]
+    to_a = [_cross(wb, a[:, k] - b[:, 0]) for k in (0, 1)]
+    out = (to_b[0] * to_b[1] < 0) & (to_a[0] * to_a[1] < 0)
     for way, start, points in ((wa, a[:, 0], b), (wb, b[:, 0], a)):
         square = (way**2).sum(axis=1)
         for k in (0, 1):
             share = np.clip(((points[:, k] - start) * way).sum(axis=1) / square, 0, 1)
-            out |= np.hypot(*(points[:, k] - start - share[:, None] * way).T) < _ON * np.sqrt(
-                square
-            )
+            off = np.hypot(*(points[:, k] - start - share[:, None] * way).T)
+            out |= off < _ON * np.sqrt(square)
     return out
 
 
@@ -143,7 +141,7 @@ def _slit(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return (np.abs(turn) < _SLIT) & ~(material & (turn != 0))
 
 
-def check_skin(mesh: PadMesh, name: str) -> None:
+def check_skin(mesh: PadMesh) -> None:
     """Refuse a skin that does not face up over x = 0, where the indenter comes down.
 
     Raises
@@ -152,33 +150,32 @@ def check_skin(mesh: PadMesh, name: str) -> None:
     """
     ends = mesh.points[mesh.curves[SKIN][:, :2]]
     low, high = ends.min(axis=(0, 1)) * 1e3, ends.max(axis=(0, 1)) * 1e3
-    where = f"curve {SKIN}, from x = {low[0]:.4g} to {high[0]:.4g} mm and y = {low[1]:.4g} to {high[1]:.4g} mm,"
+    where = (
+        f"curve {SKIN}, from x = {low[0]:.4g} to {high[0]:.4g} mm "
+        f"and y = {low[1]:.4g} to {high[1]:.4g} mm,"
+    )
     meets = meeting_place(mesh)
     if meets is None:
         way = ends[-1, 1] - ends[0, 0]
         if way[0] < abs(way[1]):
-            raise MeshError(f"{name}: {where} {_facing(way)}")
+            raise MeshError(f"{where} {_facing(way)}")
         shift = -0.5 * (low[0] + high[0])
         raise MeshError(
-            f"{name}: {where} does not lie over x = 0, where the indenter comes down; allowed: a skin over x = 0, "
-            f"this mesh shifted by {shift:.4g} mm for example"
+            f"{where} does not lie over x = 0, where the indenter comes down; "
+            f"allowed: a skin over x = 0, this mesh shifted by {shift:.4g} mm for example"
         )
     height, facet = meets
     way = ends[facet, 1] - ends[facet, 0]
     if way[0] <= abs(way[1]) / 10:
-        raise MeshError(f"{name}: {where} {_facing(way)}")
+        raise MeshError(f"{where} {_facing(way)}")
+    near = 1e-6 * np.ptp(mesh.points, axis=0)
     for curve, facets in mesh.curves.items():
-        if (
-            curve != SKIN
-            and (
-                above := _heights(mesh.points[facets[:, :2]], 1e-6 * np.ptp(mesh.points[:, 0]))
-            ).size
-        ):
-            if above.max() > height + 1e-6 * np.ptp(mesh.points[:, 1]):
-                raise MeshError(
-                    f"{name}: {where} is covered at x = 0 by curve {curve} at y = {above.max() * 1e3:.4g} mm; "
-                    "allowed: nothing above the skin, from where the indenter comes"
-                )
+        above = _heights(mesh.points[facets[:, :2]], near[0]).max(initial=-np.inf)
+        if curve != SKIN and above > height + near[1]:
+            raise MeshError(
+                f"{where} is covered at x = 0 by curve {curve} at y = {above * 1e3:.4g} mm; "
+                "allowed: nothing above the skin, from where the indenter comes"
+            )
 
 
 def meeting_place(mesh: PadMesh) -> tuple[float, int] | None:
@@ -212,4 +209,7 @@ def _facing(way: np.ndarray) -> str:
         faces, turn = "down", 180
     else:
         faces, turn = ("left", -90) if way[1] > 0 else ("right", 90)
-    return f"faces {faces}, away from the indenter; allowed: a skin that faces up, this mesh turned by {turn} degrees for example"
+    return (
+        f"faces {faces}, away from the indenter; "
+        f"allowed: a skin that faces up, this mesh turned by {turn} degrees for example"
+    )

@@ -7,6 +7,11 @@ import numpy as np
 from fingerpad.specimen.outline import OutlineLike, bisect, curve_of
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
 
+_TOO_DEEP = (
+    "receptors: no point of the pad lies at that depth and offset; "
+    "allowed: depths inside the soft tissue"
+)
+
 
 def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
     """Points (k, 2) m along the skin, following curved edges."""
@@ -33,29 +38,41 @@ def touched_side(skin: np.ndarray) -> np.ndarray:
     return y >= min(y.max() - 0.5 * np.ptp(y), middle)
 
 
+def _skin_over_zero(mesh: PadMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates x and y (ns,) m of the skin's nodes; `MeshError` if none is over x = 0."""
+    x, y = mesh.points[skin_chain(mesh)].T
+    if not (x.min() <= 0 <= x.max()):
+        raise MeshError(
+            "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
+        )
+    return x, y
+
+
 def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
-    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on, through the material."""
-    skin = mesh.curves["skin"][:, :2]
-    others = np.concatenate(
-        [facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"]
-    )
+    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on,
+    through the material.
+    """
+    skin = mesh.curves["skin"][:, :2].tolist()
+    others = [facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"]
+    others = np.concatenate(others)
     before, after = dict(others[:, ::-1].tolist()), dict(others.tolist())
-    found = []
-    for node, back, ahead in (
-        (int(skin[0, 0]), before.get(int(skin[0, 0])), int(skin[0, 1])),
-        (int(skin[-1, 1]), int(skin[-1, 0]), after.get(int(skin[-1, 1]))),
-    ):
-        if back is not None and ahead is not None and not (mesh.half and node == skin[0, 0]):
-            one, two = (mesh.points[each] - mesh.points[node] for each in (back, ahead))
-            angle = np.arctan2(
-                one[0] * two[1] - one[1] * two[0], one @ two
-            )  # material lies to the right of the way
-            found.append((node, float(angle % (2 * np.pi))))
-    return found
+    (left, second), (second_last, right) = skin[0], skin[-1]
+    ends = [(right, second_last, after.get(right))]
+    if not mesh.half:
+        ends.insert(0, (left, before.get(left), second))
+    angles = []
+    for node, back, ahead in ends:
+        if back is not None and ahead is not None:
+            one, two = mesh.points[[back, ahead]] - mesh.points[node]
+            # material lies to the right of the way
+            angle = np.arctan2(one[0] * two[1] - one[1] * two[0], one @ two)
+            angles.append((node, float(angle % (2 * np.pi))))
+    return angles
 
 
 def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
-    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` m, down to the first gap or the base.
+    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` (m), down to
+    the first gap or the base.
 
     Raises:
         MeshError: the skin does not cross x = 0.
@@ -78,22 +95,27 @@ def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
     crossed = np.count_nonzero(np.isfinite(height), axis=0) >= 2
     low, high = np.nanmin(height[:, crossed], axis=0), np.nanmax(height[:, crossed], axis=0)
     near = 1e-6 * np.ptp(mesh.points[:, 1])
-    found: dict[str, float] = {}
-    bottom = None
+    layers: dict[str, float] = {}
+    bottom = -np.inf
     for k in np.argsort(-high):
-        if bottom is not None and high[k] < bottom - near:
+        if high[k] < bottom - near:
             break
         name = mesh.regions[mesh.region[crossed][k]]
-        found[name] = found.get(name, 0.0) + float(high[k] - low[k])
+        layers[name] = layers.get(name, 0.0) + float(high[k] - low[k])
         bottom = low[k]
-    return list(found.items())
+    return list(layers.items())
+
+
+def _near_apex(mesh: PadMesh, x: np.ndarray) -> tuple[np.ndarray, float]:
+    """Which of the skin's nodes at ``x`` (ns,) m are near x = 0, and how far (m) that reaches."""
+    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
+    return np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min()), reach
 
 
 def apex_radius(mesh: PadMesh) -> float:
     """Radius of curvature (m) of the skin at x = 0; 1000 m for a flat or hollow one."""
     x, y = mesh.points[skin_chain(mesh)].T
-    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
-    near = np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())
+    near, _ = _near_apex(mesh, x)
     if len(np.unique(x[near])) < 3:
         return 1e3
     return float(1 / max(-2 * np.polyfit(x[near], y[near], 2)[0], 1e-3))
@@ -102,39 +124,35 @@ def apex_radius(mesh: PadMesh) -> float:
 def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
 
-    Raises:
-        MeshError: there is no skin, or no bone below it, at x = 0.
+    Raises
+    ------
+    MeshError
+        There is no skin, or no bone below it, at x = 0.
     """
-    chain = skin_chain(mesh)
-    x, y = mesh.points[chain].T
-    if not (x.min() <= 0 <= x.max()):
-        raise MeshError(
-            "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
-        )
-    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
-    top = y[np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())].max()
+    x, y = _skin_over_zero(mesh)
+    near, reach = _near_apex(mesh, x)
+    top = y[near].max()
     bone = mesh.points[np.unique(mesh.curves["bone"])]
-    under = bone[(np.abs(bone[:, 0]) <= np.abs(bone[:, 0]).min() + reach) & (bone[:, 1] < top)]
+    aside = np.abs(bone[:, 0])
+    under = bone[(aside <= aside.min() + reach) & (bone[:, 1] < top), 1]
     if not len(under):
         raise MeshError(
             "mesh: there is no bone below x = 0; allowed: a curve named bone under the apex"
         )
-    soft = top - under[:, 1].max()
+    soft = top - under.max()
     layer = mesh.points[np.unique(mesh.cells[mesh.region < mesh.regions.index("dermis")])]
-    column = layer[np.abs(layer[:, 0]) < reach]
-    return (
-        apex_radius(mesh),
-        float(top - column[:, 1].min() if len(column) else soft / 4),
-        float(soft),
-    )
+    column = layer[np.abs(layer[:, 0]) < reach, 1]
+    epidermis = top - column.min() if len(column) else soft / 4
+    return apex_radius(mesh), float(epidermis), float(soft)
 
 
 def apex_edge(mesh: PadMesh) -> float:
     """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
     ends = mesh.points[mesh.curves["skin"][:, :2]]
-    high = touched_side(ends.mean(axis=1))
+    middle = ends.mean(axis=1)
+    high = touched_side(middle)
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-    nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
+    nearest = np.argsort(np.where(high, np.abs(middle[:, 0]), np.inf))[:4]
     return float(lengths[nearest].mean())
 
 
@@ -157,10 +175,10 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     upper = skin[order[touched_side(skin)[order]]]
     beside = offsets[(offsets < upper[0, 0]) | (offsets > upper[-1, 0])]
     if len(beside):
+        first, last = upper[[0, -1], 0] * 1e3
         raise MeshError(
-            f"receptors: there is no skin over x = {beside[0] * 1e3:.3g} mm; allowed: offsets "
-            f"from {upper[0, 0] * 1e3:.3g} mm to "
-            f"{upper[-1, 0] * 1e3:.3g} mm"
+            f"receptors: there is no skin over x = {beside[0] * 1e3:.3g} mm; "
+            f"allowed: offsets from {first:.3g} mm to {last:.3g} mm"
         )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
 
@@ -178,10 +196,7 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     low, high = bisect(lambda height: below(height) > depths, high - 4 * depths, high)
     found = (low + high) / 2
     if np.any(np.abs(below(found) - depths) > 1e-3 * depths):
-        raise MeshError(
-            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside "
-            "the soft tissue"
-        )
+        raise MeshError(_TOO_DEEP)
     return np.column_stack([offsets, found])
 
 
@@ -193,10 +208,7 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     Raises:
         MeshError: no point of that depth exists at that offset.
     """
-    depths, offsets = (
-        np.ravel(each)
-        for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float))
-    )
+    depths, offsets = map(np.ravel, np.broadcast_arrays(depths, np.asarray(offsets, float)))
     curve = curve_of(outline)
     _, high = bisect(
         lambda theta: curve.point(theta, depths)[:, 0] < np.abs(offsets),
@@ -205,8 +217,5 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     )
     found = curve.point(np.where(offsets == 0, 0.0, high), depths)
     if np.any(np.abs(found[:, 0] - np.abs(offsets)) > 1e-9):
-        raise MeshError(
-            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside "
-            "the soft tissue"
-        )
+        raise MeshError(_TOO_DEEP)
     return found * np.column_stack((np.where(offsets < 0, -1.0, 1.0), np.ones(len(depths))))

@@ -91,7 +91,7 @@ class OutlineCurve:
         )
         self._check_layers()
 
-    # -- the skin --------------------------------------------------------------------------------------------
+    # -- the skin ------------------------------------------------------------------------------
 
     def _height(self, theta: np.ndarray) -> np.ndarray:
         return np.where(
@@ -186,7 +186,7 @@ class OutlineCurve:
         upper = np.where(size == 0.0, 0.0, upper)
         return np.where(x < 0.0, -1.0, 1.0) * (np.pi - upper if lower else upper)
 
-    # -- the bone --------------------------------------------------------------------------------------------
+    # -- the bone ------------------------------------------------------------------------------
 
     def bone_point(self, phi: ArrayLike) -> np.ndarray:
         """Points (n, 2) in m of the bone's rim at the ellipse's angles phi (n,), top 0 to bottom
@@ -214,19 +214,19 @@ class OutlineCurve:
         phi = 0.5 * sum(bisect(before_foot, start, start + 0.5 * np.pi))
         return np.where(x == 0.0, np.where(y >= 0.0, 0.0, np.pi), phi)
 
-    # -- what is not allowed ---------------------------------------------------------------------------------
+    # -- what is not allowed -------------------------------------------------------------------
 
     def _check_shape(self) -> None:
         narrowest, widest = self.scale * 2.0 / 3.0, self.scale * 11.0 / 3.0
         if not narrowest < self.outline.half_width < widest:
             raise OutlineError(
-                f"outline: half_width {_mm(self.outline.half_width)} makes the skin concave; with this apex "
-                f"it must lie between {_mm(narrowest)} and {_mm(widest)}"
+                f"outline: half_width {_mm(self.outline.half_width)} makes the skin concave; "
+                f"with this apex it must lie between {_mm(narrowest)} and {_mm(widest)}"
             )
         if not 0.0 < self.outline.nail_half_width < self.outline.half_width:
             raise OutlineError(
-                f"outline: nail_half_width {_mm(self.outline.nail_half_width)} must be above 0 and below "
-                f"half_width, {_mm(self.outline.half_width)}"
+                f"outline: nail_half_width {_mm(self.outline.nail_half_width)} must be above 0 "
+                f"and below half_width, {_mm(self.outline.half_width)}"
             )
 
     def _check_layers(self) -> None:
@@ -249,7 +249,8 @@ class OutlineCurve:
             or not -outline.depth_below < outline.bone_centre_height < outline.apex_height
         ):
             raise OutlineError(
-                "outline: the bone (bone_centre_height, bone_half_width, bone_half_height) must lie inside the skin"
+                "outline: the bone (bone_centre_height, bone_half_width, bone_half_height) "
+                "must lie inside the skin"
             )
         room = np.hypot(*(skin - self.bone_point(self.bone_foot(skin))).T).min()
         if thickness >= room:

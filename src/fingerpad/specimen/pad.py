@@ -37,13 +37,22 @@ class MeshSize:
     """How fine the built mesh shall be; all lengths in m.
 
     Parameters
-    ---------- skin_edge : edge along the skin where contact is expected (two node spacings).
-    fine_half_width : arc length from the apex within which `skin_edge` holds. layer_edge : edge
-    across epidermis and dermis. growth : largest ratio of one edge to the next finer one, along the
-    skin and into the fat under the apex. focus : pairs (x, edge): near the skin points at x and -x
-    the edge along the skin shrinks to `edge`. skin_radial_edge : first edge below the skin, growing
-    to `layer_edge`; None means `layer_edge` at once. coarse_edge : largest edge along the skin;
-    None means eight times `skin_edge`.
+    ----------
+    skin_edge : float
+        Edge along the skin where contact is expected (two node spacings).
+    fine_half_width : float
+        Arc length from the apex within which `skin_edge` holds.
+    layer_edge : float
+        Edge across epidermis and dermis.
+    growth : float
+        Largest ratio of one edge to the next finer one, along the skin and into the fat under the
+        apex.
+    focus : tuple of (float, float)
+        Pairs (x, edge): near the skin points at x and -x the edge along the skin shrinks to `edge`.
+    skin_radial_edge : float or None
+        First edge below the skin, growing to `layer_edge`; None means `layer_edge` at once.
+    coarse_edge : float or None
+        Largest edge along the skin; None means eight times `skin_edge`.
     """
 
     skin_edge: float
@@ -94,17 +103,29 @@ class PadMesh:
     """A plane mesh of the pad with named regions and curves.
 
     Parameters
-    ---------- points : (n, 2) float64, node positions in m. cells : (elements, nodes per element)
-    int32: corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
-        centre node; the order of gmsh and meshio.
-    element : "quad9", "quad4", "tri6" or "tri3". region : (elements,) int8, index into `regions`.
-    curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the
-    right of
-        the way from start to end. "skin" runs from left to right, facet after facet; a finger's
-        others are "bone" and "nail"; in a half mesh there is "symmetry".
-    symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from
-    such a mesh). half : whether this is the right half only. regions : names of the layers, outside
-    to inside. fixed : names of the curves that are held; the others, the skin among them, are free.
+    ----------
+    points : (n, 2) float64
+        Positions of the nodes in m.
+    cells : (elements, nodes per element) int32
+        Corners counter-clockwise, mid-side nodes (0-1, 1-2, ...), centre node; the order of gmsh
+        and meshio.
+    element : str
+        "quad9", "quad4", "tri6" or "tri3".
+    region : (elements,) int8
+        Index into `regions`.
+    curves : dict of str to (facets, 2 or 3) int32
+        Node numbers (start, end[, middle]), the material on the right of the way from start to
+        end. "skin" runs from left to right, facet after facet; a finger's others are "bone" and
+        "nail"; in a half mesh there is "symmetry".
+    symmetric : bool
+        Whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a
+        mesh).
+    half : bool
+        Whether this is the right half only.
+    regions : tuple of str
+        Names of the layers, outside to inside.
+    fixed : tuple of str
+        Names of the curves that are held; the others, the skin among them, are free.
     """
 
     points: np.ndarray
@@ -138,10 +159,8 @@ class PadMesh:
         on_axis = np.abs(points[:, 0]) <= 1e-6 * np.ptp(self.points[:, 0])
         points[on_axis, 0] = 0.0
         cells = number[self.cells[kept]]
-        curves = {}
-        for name, facets in self.curves.items():
-            facets = number[facets]
-            curves[name] = facets[(facets >= 0).all(axis=1)]
+        curves = {name: number[facets] for name, facets in self.curves.items()}
+        curves = {name: facets[(facets >= 0).all(axis=1)] for name, facets in curves.items()}
         rim = element_edges(cells, self.element)
         curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][
             :, [1, 0, *range(2, rim.shape[1])]
@@ -154,11 +173,8 @@ class PadMesh:
         """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads
         for the element "Q2P1".
         """
-        return (
-            self.raised()
-            if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
-            else self
-        )
+        needed = self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
+        return self.raised() if needed else self
 
     def raised(self) -> PadMesh:
         """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4
@@ -171,31 +187,32 @@ class PadMesh:
             return self
         edges = element_edges(self.cells, self.element)
         pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
-        first, count = len(self.points), len(self.cells)
-        middle = first + index.reshape(-1).astype(np.int32)
-        parts, cells = (
-            [self.points, self.points[pairs].mean(axis=1)],
-            [self.cells, middle.reshape(-1, count).T],
-        )
-        if self.element == "quad4":
-            parts.append(self.points[self.cells].mean(axis=1))
-            cells.append(first + len(pairs) + np.arange(count, dtype=np.int32)[:, None])
-        known = dict(zip(map(tuple, pairs.tolist()), range(first, first + len(pairs)), strict=True))
+        first, count, index = len(self.points), len(self.cells), index.reshape(-1)
+        known = dict(zip(map(tuple, pairs.tolist()), range(len(pairs)), strict=True))
+        middles = self.points[pairs].mean(axis=1)
         skin = self.curves[SKIN]
-        sides = np.array([known[min(pair), max(pair)] for pair in skin.tolist()]) - first
+        sides = [known[min(pair), max(pair)] for pair in skin.tolist()]
         owner = np.empty(len(pairs), dtype=np.int64)
-        owner[index.reshape(-1)] = np.arange(len(edges)) % count
-        parts[1][sides] += _bulge(self.points[skin], _areas(self.points[self.cells[owner[sides]]]))
+        owner[index] = np.arange(len(edges)) % count
+        areas = _areas(self.points[self.cells[owner[sides]]])
+        middles[sides] += _bulge(self.points[skin], areas)
+        points = [self.points, middles]
+        cells = [self.cells, first + index.reshape(-1, count).T]
+        if self.element == "quad4":
+            points.append(self.points[self.cells].mean(axis=1))
+            cells.append(first + len(pairs) + np.arange(count)[:, None])
         curves = {
             name: np.array(
-                [(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32
+                [(a, b, first + known[min(a, b), max(a, b)]) for a, b in facets.tolist()], np.int32
             ).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
-        element = "tri6" if self.element == "tri3" else "quad9"
-        cells = np.column_stack(cells).astype(np.int32)
         return replace(
-            self, points=np.concatenate(parts), cells=cells, element=element, curves=curves
+            self,
+            points=np.concatenate(points),
+            cells=np.column_stack(cells).astype(np.int32),
+            element="tri6" if self.element == "tri3" else "quad9",
+            curves=curves,
         )
 
 
@@ -230,11 +247,8 @@ def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
     """
     corners = KINDS[element].corners
     quadratic = cells.shape[1] > corners
-    edges = []
-    for side in range(corners):
-        nodes = [side, (side + 1) % corners] + ([corners + side] if quadratic else [])
-        edges.append(cells[:, nodes])
-    return np.concatenate(edges)
+    sides = [(side, (side + 1) % corners, corners + side) for side in range(corners)]
+    return np.concatenate([cells[:, side[: 3 if quadratic else 2]] for side in sides])
 
 
 def skin_chain(mesh: PadMesh) -> np.ndarray:

@@ -6,52 +6,36 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefTri
+import pandas as pd
 
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
-from fingerpad.specimen.shapes import SHAPES
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-_SQUARE = np.array(
-    [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)]
-)
-_TRIANGLE = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
-_GAUSS = 0.5 + np.sqrt(0.6) * (_SQUARE - 0.5)
-_TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  # three-point rule
 
 
-def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
-    """Corners and Gauss points (3 x 3 in quads, 3 in triangles) of the reference element, each (m,
-    2).
-    """
-    if element.startswith("quad"):
-        return _SQUARE[:4], _GAUSS
-    return _TRIANGLE, _TRIANGLE_POINTS
+def _corners(mesh: PadMesh) -> np.ndarray:
+    """Reference coordinates (corners, 2) of the corners of the elements."""
+    return KINDS[mesh.element].element.refdom.p.T
+
+
+def _sample_points(mesh: PadMesh) -> np.ndarray:
+    """Gauss points (m, 2) of the reference element: 3 in triangles, 3 x 3 in quads."""
+    kind = KINDS[mesh.element]
+    return kind.rule(2 if kind.corners == 3 else 5)[0]
 
 
 def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
     """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent
     k.
     """
-    return np.moveaxis(
-        np.tensordot(mesh.points[mesh.cells], SHAPES[mesh.element](at)[1], axes=(1, 1)), 1, -1
-    )
-
-
-def _determinant(tangents: np.ndarray) -> np.ndarray:
-    return tangents[..., 0, 0] * tangents[..., 1, 1] - tangents[..., 0, 1] * tangents[..., 1, 0]
+    gradients = KINDS[mesh.element].shapes(at)[1]
+    return np.einsum("eai,mak->emki", mesh.points[mesh.cells], gradients)
 
 
 def counter_clockwise(mesh: PadMesh) -> PadMesh:
     """The same mesh with the nodes of elements that run clockwise in the other order."""
-    clockwise = _determinant(jacobians(mesh, sample_points(mesh.element)[1])).max(axis=1) <= 0.0
+    clockwise = np.linalg.det(jacobians(mesh, _sample_points(mesh))).max(axis=1) <= 0.0
     if not clockwise.any():
         return mesh
     cells = mesh.cells.copy()
@@ -59,22 +43,21 @@ def counter_clockwise(mesh: PadMesh) -> PadMesh:
     return replace(mesh, cells=cells)
 
 
-def check_orientation(mesh: PadMesh, name: str) -> None:
+def check_orientation(mesh: PadMesh, name: str = "") -> None:
     """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss
     point.
     """
-    points = sample_points(mesh.element)[1]
-    if mesh.element.startswith("tri"):  # at all points of the rule that they are solved with
-        points = np.concatenate([points, get_quadrature(RefTri, 5)[0].T])
-    determinant = _determinant(jacobians(mesh, points))
+    points = np.concatenate([_sample_points(mesh), KINDS[mesh.element].rule(5)[0]])
+    determinant = np.linalg.det(jacobians(mesh, points))
     bad = np.flatnonzero(determinant.min(axis=1) <= 0.0)
     if len(bad):
         what = "runs clockwise" if determinant[bad[0]].max() <= 0.0 else "is folded"
         x, y = mesh.points[mesh.cells[bad[0]]].mean(axis=0) * 1e3
-        raise MeshError(
-            f"{name}: element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} ({len(bad)} of {len(mesh.cells)}); "
+        message = (
+            f"element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} ({len(bad)} of {len(mesh.cells)}); "
             "elements must be counter-clockwise with a positive Jacobian"
         )
+        raise MeshError(f"{name}: {message}" if name else message)
 
 
 def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
@@ -84,13 +67,13 @@ def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
     The determinant of the curved element's tangents over the product of their lengths; in a
     triangle over the largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
     """
-    tangents = jacobians(mesh, np.concatenate(sample_points(mesh.element)))
+    tangents = jacobians(mesh, np.concatenate([_corners(mesh), _sample_points(mesh)]))
     lengths = np.hypot(tangents[..., 0], tangents[..., 1])
     scale = lengths[..., 0] * lengths[..., 1]
     if mesh.element.startswith("tri"):
         third = np.hypot(*np.moveaxis(tangents[..., 1, :] - tangents[..., 0, :], -1, 0))
         scale = np.maximum(scale, third * lengths.max(axis=-1)) * np.sqrt(0.75)
-    return (_determinant(tangents) / scale).min(axis=1)
+    return (np.linalg.det(tangents) / scale).min(axis=1)
 
 
 def shortest_edge(mesh: PadMesh) -> float:
@@ -109,23 +92,17 @@ def quality_of(mesh: PadMesh) -> dict[str, float]:
     }
 
 
-def quality_table(meshes: Mapping[str, PadMesh]) -> DataFrame:
+def quality_table(meshes: Mapping[str, PadMesh]) -> pd.DataFrame:
     """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian
     (1).
     """
-    import pandas as pd
-
-    rows = []
-    for name, mesh in meshes.items():
-        values = quality_of(mesh)
-        rows.append(
-            {
-                "mesh": name,
-                "element": mesh.element,
-                "nodes": values["nodes"],
-                "elements": values["elements"],
-                "smallest edge (um)": values["smallest_edge_m"] * 1e6,
-                "worst scaled Jacobian (1)": values["worst_scaled_jacobian"],
-            }
-        )
-    return pd.DataFrame(rows)
+    rows = [
+        {"mesh": name, "element": mesh.element, **quality_of(mesh)} for name, mesh in meshes.items()
+    ]
+    table = pd.DataFrame(rows)
+    table["smallest_edge_m"] *= 1e6
+    names = {
+        "smallest_edge_m": "smallest edge (um)",
+        "worst_scaled_jacobian": "worst scaled Jacobian (1)",
+    }
+    return table.rename(columns=names)

@@ -9,7 +9,7 @@ out over one pitch beyond.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -22,16 +22,6 @@ _POWER = {
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}
 # pitches by which the mesh still follows the ridges above their valleys and below their tips
 _REACH = 0.25
-
-
-class RidgesLike(Protocol):
-    """What ridges say: ``inner`` has pitch, height, shape, phase and limiting, ``outer`` (or None)
-    period, height and shape.
-    """
-
-    inner: Any
-    outer: Any
-    half_width: float
 
 
 def ridge_shape(u: np.ndarray, shape: str, limiting: float = 0.0) -> np.ndarray:
@@ -60,9 +50,15 @@ class RidgedPad:
     """Depths of a ridged pad below its smooth outline.
 
     Parameters
-    ---------- outline : the scene's outline, lengths in m. ridges : the scene's. corneum :
-    thickness in m of a stratum corneum that keeps
-        it (it follows outer ridges and ignores inner ones); 0 for none.
+    ----------
+    outline : OutlineLike
+        The scene's outline, lengths in m.
+    ridges : fingerpad.scenes.specimen.Ridges
+        `inner` has pitch, height, shape, phase and limiting; `outer` (or None) has period, height
+        and shape.
+    corneum : float
+        Thickness in m of a stratum corneum that keeps it (it follows outer ridges and ignores inner
+        ones); 0 for none.
 
     Attributes
     ----------
@@ -73,7 +69,7 @@ class RidgedPad:
     above, below : depths (m) between which the mesh follows inner ridges.
     """
 
-    def __init__(self, outline: OutlineLike, ridges: RidgesLike, corneum: float = 0.0):
+    def __init__(self, outline: OutlineLike, ridges: Any, corneum: float = 0.0):
         self.curve = curve_of(outline)
         self.inner, self.outer, self.half_width = ridges.inner, ridges.outer, ridges.half_width
         inner = self.inner
@@ -85,19 +81,16 @@ class RidgedPad:
         else:
             self.tip = float(self.curve.arc_length(self.curve.theta_at_x(inner.phase))[0])
         self.period = (self.outer and self.outer.period) or self.pitch
-        halves = [
-            2.0 * self.tip / length
-            for length in (self.pitch, *([self.period] if self.outer else []))
-        ]
-        self.symmetric = all(abs(half - round(half)) < 1e-12 for half in halves)
+        lengths = [self.pitch, self.period] if self.outer else [self.pitch]
+        halves = 2.0 * self.tip / np.array(lengths)
+        self.symmetric = bool((np.abs(halves - np.round(halves)) < 1e-12).all())
         self.mean = mean_shape(inner.shape, inner.limiting)
         self.interface = self.curve.layer_depths[0]
         reach = _REACH * self.pitch
         room = 0.75 * (self.interface - corneum)
         self.above = self.interface - min(self.mean * inner.height + reach, room)
-        self.below = min(
-            self.interface + (1.0 - self.mean) * inner.height + reach, self.curve.layer_depths[1]
-        )
+        lowest = self.interface + (1.0 - self.mean) * inner.height + reach
+        self.below = min(lowest, self.curve.layer_depths[1])
 
     def _window(self, s: np.ndarray) -> np.ndarray:
         faded = np.clip((np.abs(s) - self.half_width) / self.pitch, 0.0, 1.0)
@@ -129,28 +122,7 @@ class RidgedPad:
         """Depths (m) below the smooth outline of the points (s, d) of the ridged pad."""
         d = np.asarray(d, dtype=float)
         with_skin = np.clip((self.above - d) / (self.above - self.corneum), 0.0, 1.0)
-        with_interface = np.clip((d - self.above) / (self.interface - self.above), 0.0, 1.0)
-        with_interface = np.minimum(
-            with_interface, np.clip((self.below - d) / (self.below - self.interface), 0.0, 1.0)
-        )
+        above, below = self.interface - self.above, self.below - self.interface
+        with_interface = np.minimum((d - self.above) / above, (self.below - d) / below)
+        with_interface = np.clip(with_interface, 0.0, 1.0)
         return d + self.skin_shift(s) * with_skin + self.interface_shift(s) * with_interface
-
-    def nearest(self, which: str) -> tuple[float, float]:
-        """Lateral position and depth (m, below the smooth skin) of the inner ridge's tip or valley
-        nearest to x = 0.
-
-        Of two valleys equally near the right one is meant. ``which`` is "tip" or "valley"; a tip is
-        the deepest epidermis.
-
-        Raises
-        ------
-        ValueError : another word.
-        """
-        if which not in ("tip", "valley"):
-            raise ValueError(f"a ridge has a tip and a valley, not {which!r}")
-        first = self.tip if which == "tip" else self.tip + self.wave / 2
-        step = self.pitch if which == "tip" else self.wave
-        near = first - step * np.round(first / step) + step * np.arange(-1, 2)
-        s = near[np.lexsort((-near, np.round(np.abs(near), 12)))[0]]
-        depth = float(self.interface + self.interface_shift(s))
-        return float(self.curve.point(self.curve.theta_at(s), depth)[0, 0]), depth

@@ -11,11 +11,12 @@ with a corner on the ring's 45 degrees.
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from fingerpad.specimen.element_kinds import KINDS
-from fingerpad.specimen.grid import divide, limit_growth, with_middles
+from fingerpad.specimen.grid import graded, with_middles
 from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation
 
@@ -26,212 +27,159 @@ _MOST = 64  # edges to either side of the middle and across the stack, at most, 
 # layer's
 _RING = 0.62
 _TURN = 0.2  # largest angle in radians that an edge along a half-round may turn by
+_GRID = 8001  # places at which edges are asked for
+_QUAD = ((0, 2), (2, 2), (2, 0), (0, 0), (1, 2), (2, 1), (1, 0), (0, 1), (1, 1))
 
 
-def _graded(length: float, ends: list[float], wanted, focus, growth: float) -> np.ndarray:
-    """Division points of [0, length] with the edges ``wanted(s)``, smaller at ``focus``, and
-    ``ends`` among them.
-    """
-    grid = np.union1d(np.linspace(0.0, length, 8001), [*ends, *(s for s, _ in focus)])
-    edge = wanted(grid)
-    for low, high in pairwise(ends):
-        edge = np.where((grid >= low) & (grid <= high), np.minimum(edge, high - low), edge)
-    for s, near in focus:
-        edge = np.where(grid == s, np.minimum(edge, near), edge)
-    edge = limit_growth(grid, edge, growth)
-    parts = [divide(grid, edge, low, high, np.ceil) for low, high in pairwise(ends)]
-    return np.concatenate([part[:-1] for part in parts] + [[length]])
+def _always_up(_: float):
+    return np.ceil
 
 
-def _columns(stack, size: MeshSize) -> np.ndarray:
+def _columns(stack: Any, size: MeshSize) -> np.ndarray:
     """Arc lengths of the column boundaries from the middle to the rim of the surface."""
-    length = stack.half_width if stack.radius is None else 0.5 * np.pi * stack.radius
     skin_edge = max(size.skin_edge, size.fine_half_width / _MOST)
-    fine = min(np.ceil(size.fine_half_width / skin_edge - 1e-6) * skin_edge, length)
-    fine = length if length - fine < skin_edge else fine
     largest = size.coarse_edge or _COARSEST * skin_edge
+    length = stack.half_width
+    places = np.abs([x for x, _ in size.focus])
     if stack.radius is not None:
+        length = 0.5 * np.pi * stack.radius
         largest = min(largest, _TURN * stack.radius)
-
-    def arc(x):
-        return (
-            abs(x)
-            if stack.radius is None
-            else stack.radius * np.arcsin(min(abs(x) / stack.radius, 1.0))
-        )
-
-    focus = [(float(arc(x)), edge) for x, edge in size.focus if arc(x) < length]
-    ends = [0.0, length] if fine == length else [0.0, fine, length]
-    return _graded(
-        length,
+        places = stack.radius * np.arcsin(np.minimum(places / stack.radius, 1.0))
+    fine = min(np.ceil(size.fine_half_width / skin_edge - 1e-6) * skin_edge, length)
+    ends = [0.0, length] if length - fine < skin_edge else [0.0, fine, length]
+    edges = [edge for _, edge in size.focus]
+    return graded(
+        np.linspace(0.0, length, _GRID),
+        lambda s: np.where(s <= ends[1], min(skin_edge, largest), largest),
         ends,
-        lambda s: np.where(s <= fine, min(skin_edge, largest), largest),
-        focus,
+        [(s, edge) for s, edge in zip(places.tolist(), edges, strict=True) if s < length],
         size.growth,
+        _always_up,
     )
 
 
-def _rows(stack, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndarray]:
+def _rows(stack: Any, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndarray]:
     """Depths of the row boundaries from the surface to ``depth``, and the layer of each row."""
     bounds = np.cumsum(stack.thicknesses)
     layer_edge = max(size.layer_edge, depth / _MOST)
-    first, slope, fine = (
-        min(size.skin_radial_edge or layer_edge, layer_edge),
-        np.log(size.growth),
-        0.5 * size.fine_half_width,
-    )
-    ends = [0.0, *(float(bound) for bound in bounds if bound < depth * (1 - 1e-9)), depth]
+    first = min(size.skin_radial_edge or layer_edge, layer_edge)
+    slope, fine = np.log(size.growth), 0.5 * size.fine_half_width
+    ends = [0.0, *bounds[bounds < depth * (1 - 1e-9)].tolist(), depth]
 
     def wanted(d):
-        edge = np.minimum(first + slope * d, layer_edge) + np.clip(
-            slope * (d - fine), 0.0, _COARSEST * layer_edge
-        )
+        edge = np.minimum(first + slope * d, layer_edge)
+        edge += np.clip(slope * (d - fine), 0.0, _COARSEST * layer_edge)
         for low, high in pairwise(ends):
             edge = np.where((d >= low) & (d <= high), np.minimum(edge, (high - low) / _ROWS), edge)
         return edge
 
-    rows = _graded(depth, ends, wanted, (), size.growth)
+    rows = graded(np.linspace(0.0, depth, _GRID), wanted, ends, (), size.growth, _always_up)
     middle = 0.5 * (rows[1:] + rows[:-1])
     return rows, np.minimum(np.searchsorted(bounds, middle), len(bounds) - 1)
 
 
-def _quads(columns: int, rows: int) -> np.ndarray:
-    """Half steps (elements, 9, 2) of column and row, row after row; rows count downwards, nodes run
-    counter-clockwise.
+def _quads(nodes: np.ndarray) -> np.ndarray:
+    """Elements (n, 9) of a grid of node numbers (columns, rows), row after row; rows count
+    downwards.
     """
-    shape = np.array([(0, 2), (2, 2), (2, 0), (0, 0), (1, 2), (2, 1), (1, 0), (0, 1), (1, 1)])
-    start = np.stack(
-        np.meshgrid(np.arange(columns), np.arange(rows), indexing="xy"), axis=-1
-    ).reshape(-1, 1, 2)
-    return 2 * start + shape
+    wide, deep = nodes.shape
+    parts = [nodes[i : wide - 2 + i : 2, j : deep - 2 + j : 2] for i, j in _QUAD]
+    return np.stack(parts, axis=-1).swapaxes(0, 1).reshape(-1, 9)
 
 
-def _chain(nodes: np.ndarray) -> np.ndarray:
-    """Facets (start, end, middle) of a line of nodes, mid-side nodes included."""
-    return np.column_stack((nodes[:-2:2], nodes[2::2], nodes[1:-1:2]))
-
-
-def _slab(stack, size: MeshSize):
+def _slab(stack: Any, size: MeshSize):
     """Points, cells, layer of each cell and curves of a slab's right half."""
-    x, (depth, layer) = (
-        with_middles(_columns(stack, size)),
-        _rows(stack, size, sum(stack.thicknesses)),
-    )
-    y = -with_middles(depth)
+    depth, layer = _rows(stack, size, sum(stack.thicknesses))
+    x, y = with_middles(_columns(stack, size)), -with_middles(depth)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     number = np.arange(len(points)).reshape(len(x), len(y))
-    steps = _quads(len(x) // 2, len(y) // 2)
     curves = {"skin": number[:, 0], "base": number[::-1, -1], "sides": number[-1, :]}
-    return points, number[steps[..., 0], steps[..., 1]], np.repeat(layer, len(x) // 2), curves
+    return points, _quads(number), np.repeat(layer, len(x) // 2), curves
 
 
-def _half_round(stack, size: MeshSize):
+def _half_round(stack: Any, size: MeshSize):
     """The same of a half-round."""
-    radius, above = stack.radius, sum(stack.thicknesses[:-1])
-    solid = stack.solid
-    ring = above + (1.0 - _RING) * (radius - above) if solid else sum(stack.thicknesses)
-    s, (depth, layer) = _columns(stack, size), _rows(stack, size, ring)
-    angle = with_middles(s) / radius
-    sine, cosine = np.sin(angle), np.cos(angle)
-    sine[0], cosine[-1] = 0.0, 0.0  # exactly on the axis and on the base
-    way = np.stack((sine, cosine), axis=-1)
+    radius, above, last = stack.radius, sum(stack.thicknesses[:-1]), len(stack.thicknesses) - 1
+    shells = above + (1.0 - _RING) * (radius - above) if stack.solid else sum(stack.thicknesses)
+    s, (depth, layer) = _columns(stack, size), _rows(stack, size, shells)
+    angle, wide = with_middles(s) / radius, len(s) - 1
+    way = np.column_stack((np.sin(angle), np.cos(angle)))
+    way[0, 0], way[-1, 1] = 0.0, 0.0  # exactly on the axis and on the base
     points = (radius - with_middles(depth))[None, :, None] * way[:, None, :]
-    wide = len(s) - 1
-    if not solid:
-        number = np.arange(points[..., 0].size).reshape(points.shape[:2])
-        steps = _quads(wide, len(depth) - 1)
-        base = np.concatenate((number[-1, :-1], number[::-1, -1]))
-        curves = {"skin": number[:, 0], "base": base}
-        return (
-            points.reshape(-1, 2),
-            number[steps[..., 0], steps[..., 1]],
-            np.repeat(layer, wide),
-            curves,
-        )
-
-    # between the innermost circle and a block whose corner lies on the column nearest to 45 degrees
-    inner = radius - ring
-    corner = int(np.clip(np.argmin(np.abs(s / radius - 0.25 * np.pi)), 1, wide - 1))
-    cx, cy = _RING * inner * way[2 * corner]
-    along = with_middles(s)
-    top = np.clip(along / s[corner], 0.0, 1.0)
-    side = np.clip((along - s[corner]) / (s[-1] - s[corner]), 0.0, 1.0)
-    block = np.stack((cx * top, cy * (1.0 - side)), axis=-1)
-    room = np.hypot(*(points[:, -1] - block).T).mean()
-    rings = max(
-        2, int(np.ceil(room / max(depth[-1] - depth[-2], inner * np.diff(s).min() / radius)))
-    )
-    rings = min(rings, max(4, wide // 2))
-    share = np.linspace(0.0, 1.0, 2 * rings + 1)[1:, None]
-    between = (1.0 - share) * points[:, -1][:, None, :] + share * block[:, None, :]
-    points = np.concatenate((points, between), axis=1)
-    deep = points.shape[1]
+    if stack.solid:
+        # a block whose corner lies on the column nearest to 45 degrees, and rings round it
+        inner = radius - shells
+        corner = int(np.clip(np.argmin(np.abs(s / radius - 0.25 * np.pi)), 1, wide - 1))
+        along, side = with_middles(s), _RING * inner * way[2 * corner]
+        share = (along / s[corner], (along - s[corner]) / (s[-1] - s[corner]))
+        across, up = np.clip(share, 0.0, 1.0)
+        block = side * np.column_stack((across, 1.0 - up))
+        room = np.hypot(*(points[:, -1] - block).T).mean()
+        edge = max(depth[-1] - depth[-2], inner * np.diff(s).min() / radius)
+        rings = min(max(2, int(np.ceil(room / edge))), max(4, wide // 2))
+        share = np.linspace(0.0, 1.0, 2 * rings + 1)[1:, None]
+        between = (1.0 - share) * points[:, -1:] + share * block[:, None]
+        points = np.concatenate((points, between), axis=1)
+        layer = np.append(layer, np.full(rings, last))
     number = np.arange(points[..., 0].size).reshape(points.shape[:2])
-    steps = _quads(wide, (deep - 1) // 2)
-    cells, last = [number[steps[..., 0], steps[..., 1]]], len(stack.thicknesses) - 1
-    layer = [np.repeat(np.concatenate((layer, np.full(rings, last))), wide)]
-    # the block itself: its top and its right side are the ring's innermost nodes
-    across, down = 2 * corner + 1, 2 * (wide - corner) + 1
-    grid = np.empty((across, down), dtype=int)
-    grid[:, 0], grid[-1, :] = number[:across, -1], number[2 * corner :, -1]
-    grid[:-1, 1:] = number.size + np.arange((across - 1) * (down - 1)).reshape(across - 1, down - 1)
-    inside = np.stack(
-        np.meshgrid(block[: across - 1, 0], block[2 * corner + 1 :, 1], indexing="ij"), axis=-1
-    )
-    steps = _quads(corner, wide - corner)
-    cells.append(grid[steps[..., 0], steps[..., 1]])
-    layer.append(np.full(len(steps), last))
-    base = np.concatenate((number[-1, :-1], grid[::-1, -1]))
-    points = np.concatenate((points.reshape(-1, 2), inside.reshape(-1, 2)))
-    return (
-        points,
-        np.concatenate(cells),
-        np.concatenate(layer),
-        {"skin": number[:, 0], "base": base},
-    )
+    points, innermost = points.reshape(-1, 2), number
+    cells, region = _quads(number), np.repeat(layer, wide)
+    if stack.solid:
+        # the block: its top and its right side are the innermost ring's nodes
+        inside = np.meshgrid(block[: 2 * corner, 0], block[2 * corner + 1 :, 1], indexing="ij")
+        innermost = np.empty((2 * corner + 1, 2 * (wide - corner) + 1), dtype=int)
+        innermost[:, 0], innermost[-1] = number[: 2 * corner + 1, -1], number[2 * corner :, -1]
+        innermost[:-1, 1:] = number.size + np.arange(inside[0].size).reshape(inside[0].shape)
+        points = np.concatenate((points, np.stack(inside, axis=-1).reshape(-1, 2)))
+        cells = np.concatenate((cells, _quads(innermost)))
+        region = np.append(region, np.full(len(cells) - len(region), last))
+    base = np.concatenate((number[-1, :-1], innermost[::-1, -1]))
+    return points, cells, region, {"skin": number[:, 0], "base": base}
 
 
-def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
+def build_stack_mesh(stack: Any, size: MeshSize) -> PadMesh:
     """Mesh a slab or a half-round with second-order quads (quad9), mirror-symmetric to the last
     bit.
 
     Parameters
-    ---------- stack : has `names` and `thicknesses` (m) of the layers, outside to inside,
-    `half_width` (m), `radius` (m; None for a slab)
-        and, for a half-round, `solid`: whether the innermost layer fills it.
-    size : edge lengths; `layer_edge` holds to a depth of half of `fine_half_width`, below it rows
-    grow.
+    ----------
+    stack : fingerpad.scenes.specimen.Slab or HalfRound
+        Has `names` and `thicknesses` (m) of the layers, outside to inside, `half_width` (m),
+        `radius` (m; None for a slab) and, for a half-round, `solid`: whether the innermost layer
+        fills it.
+    size : MeshSize
+        Edge lengths; `layer_edge` holds to a depth of half of `fine_half_width`, below it rows
+        grow.
 
     Returns
     -------
-    PadMesh with the curves "skin", "base" (fixed) and, of a slab, "sides" (free).
+    PadMesh
+        With the curves "skin", "base" (fixed) and, of a slab, "sides" (free).
 
     Raises
     ------
-    MeshError : when an element would be inverted.
+    MeshError
+        An element would be inverted.
     """
-    points, cells, region, curves = (
-        _slab(stack, size) if stack.radius is None else _half_round(stack, size)
-    )
-    on_axis = points[:, 0] == 0.0
+    shape = _slab if stack.radius is None else _half_round
+    points, cells, region, curves = shape(stack, size)
+    left = np.flatnonzero(points[:, 0] != 0.0)
     mirror = np.arange(len(points))
-    mirror[~on_axis] = len(points) + np.arange(np.count_nonzero(~on_axis))
-    by_layer = np.argsort(np.concatenate((region, region)), kind="stable")
+    mirror[left] = len(points) + np.arange(len(left))
+    region = np.tile(region, 2)
+    by_layer = np.argsort(region, kind="stable")
 
-    def whole(name, line):
-        right = _chain(line)
-        left = mirror[right][::-1][:, [1, 0, 2]]
-        if name == "skin":
-            return np.concatenate((left, right)).astype(np.int32)
-        return np.concatenate((right, left)).astype(np.int32)
+    def whole(name: str, line: np.ndarray) -> np.ndarray:
+        right = np.column_stack((line[:-2:2], line[2::2], line[1:-1:2]))  # start, end, middle
+        halves = [right, mirror[right][::-1][:, [1, 0, 2]]]
+        return np.concatenate(halves[::-1] if name == "skin" else halves).astype(np.int32)
 
+    cells = np.concatenate((cells, mirror[cells][:, KINDS["quad9"].mirrored]))
     mesh = PadMesh(
-        points=np.concatenate((points, points[~on_axis] * (-1.0, 1.0))),
-        cells=np.concatenate((cells, mirror[cells][:, KINDS["quad9"].mirrored]))[by_layer].astype(
-            np.int32
-        ),
+        points=np.concatenate((points, points[left] * (-1.0, 1.0))),
+        cells=cells[by_layer].astype(np.int32),
         element="quad9",
-        region=np.concatenate((region, region))[by_layer].astype(np.int8),
+        region=region[by_layer].astype(np.int8),
         curves={name: whole(name, line) for name, line in curves.items()},
         symmetric=True,
         regions=tuple(stack.names),

@@ -4,15 +4,14 @@ its noise allows.
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solveh_banded
+from scipy.interpolate import make_lsq_spline
 
-from fingerpad.tables import Table, TableError, read_table
-from fingerpad.units import QuantityError, parse_quantity
+from fingerpad.stimuli.columns import columns_with_units
+from fingerpad.tables import TableError, read_table
 
 EXACT = 5e-3
 """Of the largest value of a course, by which the pieces may be off."""
@@ -22,9 +21,6 @@ to the other.
 """
 MOST_PIECES = 2000
 """Of a course."""
-_COLUMN = re.compile(
-    r"\s*(time|depth|force)(?:\s*[(\[](.*)[)\]]|\s*/\s*(.*)|_(.*))\s*", re.IGNORECASE
-)
 _DIMENSIONS = {"time": "time", "depth": "length", "force": "force"}
 _ALLOWED = "the columns 'time (s)' and 'depth (mm)', or 'time (s)' and 'force (gf)'"
 
@@ -49,7 +45,7 @@ def read_course(path: str | Path) -> Course:
     OSError, TableError : there is no such table; the message is one line.
     """
     table = read_table(path)
-    columns = _columns(table)
+    columns = columns_with_units(table, _DIMENSIONS, _ALLOWED)
     if ("depth" in columns) == ("force" in columns):
         both = "both depth and force" if "depth" in columns else "neither depth nor force"
         raise TableError(f"has {both} among its columns {', '.join(table.header)[:60]}", _ALLOWED)
@@ -89,26 +85,6 @@ def read_course(path: str | Path) -> Course:
     )
 
 
-def _columns(table: Table) -> dict[str, tuple[int, float]]:
-    found = {}
-    for k, name in enumerate(table.header):
-        if match := _COLUMN.fullmatch(name):
-            unit, what = (
-                next(part for part in match.groups()[1:] if part is not None),
-                match[1].lower(),
-            )
-            try:
-                if what in found:
-                    both = f"'{table.header[found[what][0]][:30]}' and '{name[:30]}'"
-                    raise TableError(f"has two columns of {what}: {both}", f"one column of {what}")
-                found[what] = k, parse_quantity(f"1 {unit}", _DIMENSIONS[what])
-            except QuantityError as error:
-                raise TableError(
-                    f"has the column '{name[:40]}', which {error.problem}", _ALLOWED
-                ) from None
-    return found
-
-
 def _noise(values: np.ndarray) -> float:
     """Standard deviation of the noise of samples, from their second differences, which leave
     nothing of a slope.
@@ -120,16 +96,8 @@ def _noise(values: np.ndarray) -> float:
 
 def _fitted(times: np.ndarray, values: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Values (k,) at corners of the pieces that fit all samples best, by least squares."""
-    knots = times[corners]
-    piece = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-    share = (times - knots[piece]) / (knots[piece + 1] - knots[piece])
-    bands, right = np.zeros((2, len(knots))), np.zeros(len(knots))
-    for first, weight in ((0, 1 - share), (1, share)):
-        np.add.at(bands[1], piece + first, weight**2)
-        np.add.at(right, piece + first, weight * values)
-    np.add.at(bands[0], piece + 1, share * (1 - share))
-    bands[1] *= 1 + 1e-12
-    return np.maximum(solveh_banded(bands, right), 0.0)
+    knots = np.pad(times[corners], 1, mode="edge")
+    return np.maximum(make_lsq_spline(times, values, knots, k=1).c, 0.0)
 
 
 def corners_of(times: np.ndarray, values: np.ndarray, within: float) -> np.ndarray:

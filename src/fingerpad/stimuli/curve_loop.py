@@ -2,22 +2,10 @@
 
 from math import atan2, cos, hypot, inf, sin
 
+import numpy as np
 from numba import njit
 
 from fingerpad.compiled import JIT
-
-
-@njit(**JIT | {"inline": "always", "cache": False})
-def _at(x, ends, right):
-    """The first of the inner ends at or after ``x``; with ``right`` the first after it."""
-    low, high = 1, len(ends) - 1
-    while low < high:
-        middle = (low + high) // 2
-        if ends[middle] < x or (right and ends[middle] == x):
-            low = middle + 1
-        else:
-            high = middle
-    return low - 1
 
 
 @njit(**JIT)
@@ -36,7 +24,8 @@ def closest(points, below, within, ends, pieces, limits, distance, gradient, cur
     last, looked = len(end_x) - 2, 0
     for k in range(len(points)):
         x, y = points[k, 0], points[k, 1]
-        first, final = _at(x - within[k], end_x, False), _at(x + within[k], end_x, True)
+        first = np.searchsorted(end_x[1:-1], x - within[k])
+        final = np.searchsorted(end_x[1:-1], x + within[k], side="right")
         looked += final + 1 - first
         to_piece, to_corner, on, at = inf, inf, first, first
         for piece in range(first, final + 1):

@@ -13,18 +13,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import get_annotations
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Union
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Tag, field_serializer, model_validator
+from pydantic import BeforeValidator, field_serializer, model_validator
 from pydantic.json_schema import SkipJsonSchema
+from scipy.optimize import brentq
 
 from fingerpad.documents import Problem, Strict, nearest
-from fingerpad.fields import Length, Time, listed, quantity
-from fingerpad.files import expanded
-from fingerpad.roots import root
+from fingerpad.fields import Length, OneOf, Time, listed, quantity
+from fingerpad.stimuli.columns import read_file
 from fingerpad.stimuli.course import Course, read_course
-from fingerpad.tables import TableError
 from fingerpad.units import format_quantity
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed
@@ -64,9 +63,9 @@ class Goal(NamedTuple):
     (m).
     """
 
-    force: float | None
-    depth: float | None
-    distance: float
+    force: float | None = None
+    depth: float | None = None
+    distance: float = 0.0
 
 
 class Reached(NamedTuple):
@@ -130,7 +129,6 @@ class Leg(Strict):
         depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or
         "depth" on that way. speed: m/s, None for a steady leg, or one that has none; every leg says
         it. quickest: s, that its load would take at its fastest, where that is not its duration.
-        starts: what it starts at, N or m, where that is said: where the leg before has ended.
     """
 
     key: ClassVar[str]
@@ -146,7 +144,6 @@ class Leg(Strict):
     along: ClassVar[float] = 0.0
     kept: ClassVar[str | None] = None
     quickest: ClassVar[float | None] = None
-    starts: ClassVar[float | None] = None
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -175,9 +172,15 @@ class Leg(Strict):
         """What is known after it."""
         raise NotImplementedError
 
+    def jump(self, before: tuple[str, float] | None) -> tuple[str, str] | None:
+        """What is wrong with its start, and what is allowed, after a leg that left `before`."""
+        return None
+
     def leaves(self, target: tuple[str, float] | None) -> tuple[str, float] | None:
         """The key and value that are prescribed after it, if those before it were `target`."""
-        return target
+        if self.presses:
+            return self.key, self.target
+        return None if self.releases else target
 
 
 #: key in a scene -> leg
@@ -191,18 +194,24 @@ its states would be off.
 
 
 def _ramp(
-    start: float, end: float, speed: float | None, how: Stepping
-) -> tuple[list[float], np.ndarray, float | None]:
-    """Values from start to end, durations and the last of these; steady without a speed."""
+    kept: str, start: float, end: float, speed: float | None, at: Goal, how: Stepping
+) -> tuple[np.ndarray, list[Goal], float | None]:
+    """The `path` of a leg that takes the force or the depth (`kept`) from one value to another;
+    steady without a speed.
+    """
     count = how.increments if speed is None else how.steps
     last = None if speed is None else abs(end - start) / speed / count
     values = [start + (end - start) * k / count for k in range(1, count)] + [end]
-    return values, np.full(count, STEADY if speed is None else last), last
+    goals = [Goal(distance=at.distance, **{kept: value}) for value in values]
+    return np.full(count, STEADY if speed is None else last), goals, last
 
 
-def _taking(way: float, speed: float | None) -> float:
-    """Duration, s, of a way at a speed; a steady leg takes none."""
-    return 0.0 if speed is None else abs(way) / speed
+def _after(outlook: Outlook, way: float, speed: float | None, **known: Any) -> Outlook:
+    """What is known after a way at a speed (a steady leg takes no time): `known`, and of force and
+    depth no more.
+    """
+    time = outlook.time + (0.0 if speed is None else abs(way) / speed)
+    return outlook._replace(**{"time": time, "force": math.nan, "depth": math.nan, **known})
 
 
 class PressToForce(Leg):
@@ -224,18 +233,13 @@ class PressToForce(Leg):
         return self.press_to_force
 
     def path(self, at, last, reached, how):
-        rate = self.rate and self.rate / how.contact_length
-        values, sizes, last = _ramp(
-            reached.force, self.press_to_force / how.contact_length, rate, how
-        )
-        return sizes, [Goal(value, None, at.distance) for value in values], last
+        length = how.contact_length
+        rate = self.rate and self.rate / length
+        return _ramp("force", reached.force, self.press_to_force / length, rate, at, how)
 
     def ahead(self, outlook):
-        time = outlook.time + _taking(self.press_to_force - outlook.force, self.rate)
-        return outlook._replace(time=time, force=self.press_to_force, depth=math.nan)
-
-    def leaves(self, target):
-        return self.key, self.target
+        way = self.press_to_force - outlook.force
+        return _after(outlook, way, self.rate, force=self.press_to_force)
 
 
 class PressToDepth(Leg):
@@ -255,15 +259,11 @@ class PressToDepth(Leg):
         return self.press_to_depth
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how)
-        return sizes, [Goal(None, value, at.distance) for value in values], last
+        return _ramp("depth", reached.depth, self.press_to_depth, self.speed, at, how)
 
     def ahead(self, outlook):
-        time = outlook.time + _taking(self.press_to_depth - outlook.depth, self.speed)
-        return outlook._replace(time=time, force=math.nan, depth=self.press_to_depth)
-
-    def leaves(self, target):
-        return self.key, self.target
+        way = self.press_to_depth - outlook.depth
+        return _after(outlook, way, self.speed, depth=self.press_to_depth)
 
 
 class Hold(Leg):
@@ -279,11 +279,9 @@ class Hold(Leg):
 
     def path(self, at, last, reached, how):
         even = self.hold / how.steps
-        sizes = (
-            geometric(self.hold, how.steps, min(last or even, even))
-            if how.timed
-            else np.array([self.hold])
-        )
+        sizes = np.array([self.hold])
+        if how.timed:
+            sizes = geometric(self.hold, how.steps, min(last or even, even))
         return sizes, [at] * len(sizes), last
 
     def ahead(self, outlook):
@@ -306,19 +304,12 @@ class Lift(Leg):
         return None if self.lift == "steady" else self.lift
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how)
-        return sizes, [Goal(None, value, at.distance) for value in values], last
+        return _ramp("depth", reached.depth, reached.touching, self.speed, at, how)
 
     def ahead(self, outlook):
-        left = (
-            math.nan if outlook.moved else 0.0
-        )  # where the skin is touched depends on the surface there
-        return outlook._replace(
-            time=outlook.time + _taking(outlook.depth - left, self.speed), force=0.0, depth=left
-        )
-
-    def leaves(self, target):
-        return None
+        # where the skin is touched depends on the surface there
+        left = math.nan if outlook.moved else 0.0
+        return _after(outlook, outlook.depth - left, self.speed, force=0.0, depth=left)
 
 
 class Follow(Leg):
@@ -341,24 +332,7 @@ class Follow(Leg):
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
         """Reads the course from the file."""
         if "course" not in data:
-            if not isinstance(data.get("table"), (str, Path)):
-                raise Problem("is not a path", "the path of a CSV file", ("table",))
-            path = (
-                expanded(data["table"]).absolute()
-                if context is None
-                else context.resolve(data["table"])
-            )
-            try:
-                data |= {"table": path, "course": read_course(path)}
-            except FileNotFoundError:
-                raise Problem(
-                    "is not an existing file", "the path of a CSV file", ("table",)
-                ) from None
-            except TableError as error:
-                raise Problem(error.problem, error.allowed, ("table",)) from None
-            except (OSError, ValueError) as error:
-                reason = getattr(error, "strerror", None) or type(error).__name__
-                raise Problem(f"cannot be read ({reason})", "a CSV file", ("table",)) from None
+            data["table"], data["course"] = read_file(data, "table", context, read_course)
         return data
 
     @field_serializer("table")
@@ -375,10 +349,15 @@ class Follow(Leg):
         """Largest depth, m, of a course of depth."""
         return max(self.course.values) if self.course.kept == "depth" else None
 
-    @property
-    def starts(self) -> float:
-        """Its first value, N or m."""
-        return self.course.values[0]
+    def jump(self, before):
+        kept, start = self.course.kept, self.course.values[0]
+        if before is None or before[0] != self.leaves(None)[0]:
+            return None
+        if abs(start - before[1]) <= _APART * max(self.course.values):
+            return None
+        dimension = "length" if kept == "depth" else "force"
+        starts, there = (format_quantity(value, dimension) for value in (start, before[1]))
+        return f"starts at {starts}, where the finger is at {there}", f"a first row at {there}"
 
     @property
     def quickest(self) -> float:
@@ -387,36 +366,30 @@ class Follow(Leg):
         return float(values.max() / np.max(np.abs(np.diff(values)) / np.diff(times)))
 
     def path(self, at, last, reached, how):
-        times, values = np.array(self.course.times), np.array(self.course.values)
-        if self.course.kept == "force":  # under no force at all there is no depth
+        kept, times, values = self.course.kept, *map(np.array, self.course[:2])
+        if kept == "force":  # under no force at all there is no depth
             values = np.maximum(values, _LEAST_FORCE * values.max()) / how.contact_length
         sizes: list[float] = []
         ends: list[float] = []
-        before = reached.force if self.course.kept == "force" else reached.depth
-        for start, end, value in zip(times, times[1:], values[1:], strict=False):
+        before = getattr(reached, kept)
+        for duration, value in zip(np.diff(times), values[1:], strict=True):
             share = abs(value - before) / values.max()
             count = max(1, round(how.steps * share)) if how.timed else 1
-            first = sizes[-1] if sizes else (end - start) / count
-            if share < _HELD and how.timed:  # what is held relaxes ever more slowly
+            first = sizes[-1] if sizes else duration / count
+            if share < _UNCHANGED and how.timed:  # what is held relaxes ever more slowly
                 count = max(count, how.steps)
-                sizes += geometric(end - start, count, min(first, (end - start) / count)).tolist()
+                sizes += geometric(duration, count, min(first, duration / count)).tolist()
             else:
-                sizes += [(end - start) / count] * count
-            ends += [before + (value - before) * k / count for k in range(1, count)] + [
-                float(value)
-            ]
+                sizes += [duration / count] * count
+            ends += [before + (value - before) * k / count for k in range(1, count)]
+            ends.append(float(value))
             before = value
-        goals = [
-            Goal(end, None, at.distance)
-            if self.course.kept == "force"
-            else Goal(None, end, at.distance)
-            for end in ends
-        ]
+        goals = [Goal(distance=at.distance, **{kept: end}) for end in ends]
         return np.array(sizes), goals, sizes[-1]
 
     def ahead(self, outlook):
-        known = {"force": math.nan, "depth": math.nan} | {self.course.kept: self.course.values[-1]}
-        return outlook._replace(time=outlook.time + self.course.times[-1], **known)
+        times, values, kept = self.course
+        return _after(outlook, times[-1], 1.0, **{kept: values[-1]})
 
     def leaves(self, target):
         return f"press_to_{self.course.kept}", self.course.values[-1]
@@ -426,7 +399,7 @@ _APART = 0.02
 """Of the largest value of a course, by which it may start beside where the leg before ended."""
 _LEAST_FORCE = 1e-3
 """Of the largest force of a course: less is taken for this."""
-_HELD = 0.01
+_UNCHANGED = 0.01
 """Of the largest value of a course: a piece that changes by less is held."""
 
 
@@ -456,21 +429,17 @@ class Slide(Leg):
 
     def path(self, at, last, reached, how):
         places = how.way(at.distance, self.slide)
-        if self.keep == "force":
-            force, depth = reached.force if at.force is None else at.force, None
-        else:
-            force, depth = None, reached.depth if at.depth is None else at.depth
-        goals = [Goal(force, depth, float(place)) for place in places]
+        value = getattr(at, self.keep)
+        kept = {self.keep: getattr(reached, self.keep) if value is None else value}
+        goals = [Goal(distance=float(place), **kept) for place in places]
         if self.speed is None:
             return np.full(len(places), STEADY), goals, None
         sizes = np.abs(np.diff(places, prepend=at.distance)) / self.speed
         return sizes, goals, float(sizes[-1])
 
     def ahead(self, outlook):
-        kept = {"force": math.nan, "depth": math.nan} | {self.keep: getattr(outlook, self.keep)}
-        return outlook._replace(
-            time=outlook.time + _taking(self.slide, self.speed), moved=True, **kept
-        )
+        kept = {self.keep: getattr(outlook, self.keep)}
+        return _after(outlook, self.slide, self.speed, moved=True, **kept)
 
     def leaves(self, target):
         return target if target and target[0] == f"press_to_{self.keep}" else None
@@ -513,41 +482,34 @@ class StepAndRepeat(Leg):
 
     def path(self, at, last, reached, how):
         count = round(abs(self.step) / self.every)
-        goals = [
-            Goal(at.force, at.depth, at.distance + self.step * k / count)
-            for k in range(1, count + 1)
-        ]
+        places = [at.distance + self.step * k / count for k in range(1, count + 1)]
+        goals = [at._replace(distance=place) for place in places]
         return np.full(count, STEADY), goals, None
 
     def ahead(self, outlook):
         return outlook._replace(moved=True)
 
 
-# --- programmes -------------------------------------------------------------------------------------------------------------
+# --- programmes ---------------------------------------------------------------------------------
 
 LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
 
 
-def _check_leg(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        kinds = [key for key in LEGS if key in value]
-        first = next(iter(value), None)
-        if not kinds:
-            near = nearest(first, LEGS) if isinstance(first, str) else ""
-            raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(LEGS)}")
-        if len(kinds) > 1:
-            raise Problem(
-                f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion"
-            )
-    elif not isinstance(value, Leg):
-        raise Problem("is not a leg", LEG_EXAMPLE)
-    return value
-
-
-def _tag(value: Any) -> str | None:
+def _leg_of(value: Any) -> type[Leg]:
+    """The kind of a leg, or of the mapping that describes one."""
     if isinstance(value, Leg):
-        return f"<{value.key}>"
-    return next((f"<{key}>" for key in LEGS if key in value), None)
+        return type(value)
+    if not isinstance(value, Mapping):
+        raise Problem("is not a leg", LEG_EXAMPLE)
+    kinds = [key for key in LEGS if key in value]
+    if not kinds:
+        first = next(iter(value), None)
+        near = nearest(first, LEGS) if isinstance(first, str) else ""
+        raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(LEGS)}")
+    if len(kinds) > 1:
+        both = " and ".join(kinds)
+        raise Problem(f"is two legs in one: {both}", "one of them in each entry of motion")
+    return LEGS[kinds[0]]
 
 
 def _check_motion(legs: Any) -> Any:
@@ -558,12 +520,7 @@ def _check_motion(legs: Any) -> Any:
     return legs
 
 
-AnyLeg = Annotated[
-    Union[tuple(Annotated[leg, Tag(f"<{key}>")] for key, leg in LEGS.items())],  # noqa: UP007
-    Discriminator(_tag),
-    BeforeValidator(_check_leg),
-]
-_Motion = tuple[AnyLeg, ...]
+_Motion = tuple[Annotated[Leg, OneOf(_leg_of, LEGS)], ...]
 Motion = Annotated[_Motion, BeforeValidator(_check_motion, json_schema_input_type=_Motion | Follow)]
 """Field type: legs, one after the other."""
 
@@ -572,50 +529,27 @@ def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
     """Refuses legs that make no sense one after the other, on a surface of `length` m; `Problem`
     with the key below motion.
     """
-    if not legs[0].presses:
-        raise Problem(
-            "comes before anything is pressed",
-            "a press_to_force or press_to_depth leg first",
-            (0, legs[0].key),
-        )
     last: tuple[str, float] | None = None
     way, pressed = 0.0, False
     for i, leg in enumerate(legs):
-        if leg.needs_contact and not pressed:
-            raise Problem(
-                "comes when nothing is pressed any more",
-                "a press before it, or a hold",
-                (i, leg.key),
-            )
         way += leg.along
-        if abs(leg.along) > MAXIMUM_STROKE:
-            raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", (i, leg.key))
-        if leg.along and math.isfinite(length) and not -1e-9 <= way <= length + 1e-9:
+        wrong = None
+        if i == 0 and not leg.presses:
+            first = "a press_to_force or press_to_depth leg first"
+            wrong = "comes before anything is pressed", first
+        elif leg.needs_contact and not pressed:
+            wrong = "comes when nothing is pressed any more", "a press before it, or a hold"
+        elif abs(leg.along) > MAXIMUM_STROKE:
+            wrong = "is too long a way", f"up to {MAXIMUM_STROKE:g} m"
+        elif leg.along and math.isfinite(length) and not -1e-9 <= way <= length + 1e-9:
             end = format_quantity(length, "length")
-            raise Problem(
-                "leads off the surface", f"to stay from 0 mm to {end} along it", (i, leg.key)
-            )
-        if leg.presses and (leg.key, leg.target) == last:
-            raise Problem(
-                "is where the leg before ended", "another target, or a hold", (i, leg.key)
-            )
-        if leg.starts is not None and (
-            i == 0 or (last and last[0] == f"press_to_{leg.course.kept}")
-        ):
-            before, quantity = (
-                0.0 if i == 0 else last[1],
-                "length" if leg.course.kept == "depth" else "force",
-            )
-            if abs(leg.starts - before) > _APART * max(leg.course.values):
-                starts, there = (
-                    format_quantity(leg.starts, quantity),
-                    format_quantity(before, quantity),
-                )
-                raise Problem(
-                    f"starts at {starts}, where the finger is at {there}",
-                    f"a first row at {there}",
-                    (i, leg.key),
-                )
+            wrong = "leads off the surface", f"to stay from 0 mm to {end} along it"
+        elif leg.presses and (leg.key, leg.target) == last:
+            wrong = "is where the leg before ended", "another target, or a hold"
+        else:
+            wrong = leg.jump(last if i else (leg.leaves(None)[0], 0.0))
+        if wrong:
+            raise Problem(*wrong, (i, leg.key))
         last = leg.leaves(last)
         pressed = leg.presses or (pressed and not leg.releases)
 
@@ -639,7 +573,7 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
         return np.full(count, duration / count)
     most = (duration / first) ** (1 / (count - 1))  # or the last step alone were longer
     high = most * (1 + 1e-12) if many else 1 + most
-    ratio = root(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
+    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())
 
@@ -728,9 +662,9 @@ def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarr
     """Durations (s) and goals of a leg's steps when so many are made one; the last may be of
     fewer.
     """
-    starts = range(0, len(goals), stride)
-    sizes = np.add.reduceat(sizes, starts)
-    return np.minimum(sizes, STEADY), [goals[min(k + stride, len(goals)) - 1] for k in starts]
+    starts = np.arange(0, len(goals), stride)
+    ends = np.minimum(starts + stride, len(goals)) - 1
+    return np.minimum(np.add.reduceat(sizes, starts), STEADY), [goals[k] for k in ends]
 
 
 def _between(before: Goal, after: Goal, share: float) -> Goal:

@@ -3,6 +3,7 @@ the metrologist's filter.
 """
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 #: Turning to and fro (rad) within half an edge, above which a profile is rougher than the mesh can
 #: feel.
@@ -61,8 +62,6 @@ def smoothed(x: np.ndarray, y: np.ndarray, cutoff: float) -> tuple[np.ndarray, n
     regression form (after ISO 16610-31): a line is fitted under the Gaussian's weight at each
     place, so that slopes are kept up to the ends.
     """
-    from scipy.ndimage import gaussian_filter1d  # here, for it is slow to import
-
     sigma = SIGMA * cutoff
     count = int(np.clip(np.ceil(np.ptp(x) / sigma * _PER_SIGMA), 32, _MOST)) + 1
     even = np.linspace(x[0], x[-1], count)

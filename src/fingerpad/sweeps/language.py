@@ -26,17 +26,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
 
-from fingerpad.documents import (
-    HIDE,
-    Problem,
-    SceneError,
-    Strict,
-    explain,
-    nearest,
-    read_yaml,
-    tidy_schema,
-)
-from fingerpad.fields import filled, listed, number, whole
+from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.fields import filled, listed, number, published_schema, whole
 from fingerpad.files import expanded
 from fingerpad.measures.known import OF_ANY, known
 from fingerpad.scenes.scene import LEVELS, Scene, load_scene
@@ -677,5 +668,4 @@ def _word(value: Any) -> str:
 
 def sweep_json_schema() -> dict[str, Any]:
     """JSON schema of a sweep as people write it."""
-    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    return schema | tidy_schema(Sweep.model_json_schema()) | {"title": "A fingerpad sweep"}
+    return published_schema(Sweep.model_json_schema(), "A fingerpad sweep")

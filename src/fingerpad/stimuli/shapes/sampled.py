@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
-from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -16,12 +14,11 @@ from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem
 from fingerpad.fields import quantity
-from fingerpad.files import expanded
+from fingerpad.stimuli.columns import columns_with_units, read_file
 from fingerpad.stimuli.curve import Curve, share_of_height
 from fingerpad.stimuli.shapes.shape import CurvedShape
 from fingerpad.stimuli.smoothing import SKIN_EDGE, WAVE, cutoffs, is_rough, smoothed
-from fingerpad.tables import TableError, read_table
-from fingerpad.units import QuantityError, parse_quantity
+from fingerpad.tables import Table, TableError, read_table
 
 
 def _needs_its_file(schema: dict[str, Any]) -> None:
@@ -67,14 +64,8 @@ class Sampled(CurvedShape):
                 raise Problem(
                     "is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE
                 )
-            if not isinstance(data["csv"], (str, Path)):
-                raise Problem("is not a path", "the path of a CSV file", ("csv",))
-            data["csv"] = (
-                expanded(data["csv"]).absolute()
-                if context is None
-                else context.resolve(data["csv"])
-            )
-            data["x"], data["y"], data["read_as"] = _read_profile(data["csv"])
+            data["csv"], profile = read_file(data, "csv", context, _read_profile, _ALLOWED)
+            data["x"], data["y"], data["read_as"] = profile
         return data | {
             key: tuple(map(float, data[key]))
             for key in "xy"
@@ -95,8 +86,7 @@ class Sampled(CurvedShape):
         return {"csv": self.csv and self.csv.name, "sha256": hashlib.sha256(points).hexdigest()}
 
 
-_COLUMN = re.compile(r"\s*([xyz])(?:\s*[(\[](.*)[)\]]|\s*/\s*(.*)|_(.*))\s*", re.IGNORECASE)
-"""A column's name: `x (mm)`, `x [mm]`, `x / mm` or `x_mm`."""
+_ALLOWED = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing"
 NARROWEST, WIDEST = 10e-6, 10.0
 """Widths (m) between which a profile is believed to be in the unit that its columns name."""
 
@@ -106,93 +96,51 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...], tup
 
     Raises
     ------
-    Problem : they are no numbers, x does not increase, or their size is not believable.
+    TableError : they are no numbers, x does not increase, or their size is not believable.
     """
-
-    def wrong(
-        problem: str,
-        allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing",
-    ) -> Problem:
-        return Problem(problem, allowed, ("csv",))
-
-    try:
-        table = read_table(path)
-        found = _profile_columns(table.header)
-        x, y, *z = (
-            [factor * number for number in table.numbers(k)] for k, factor in found.values()
-        )
-    except FileNotFoundError:
-        raise wrong("is not an existing file") from None
-    except TableError as error:
-        raise wrong(error.problem, error.allowed) from None
-    except (OSError, ValueError) as error:
-        raise wrong(
-            f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})"
-        ) from None
+    table = read_table(path)
+    found = _profile_columns(table)
+    x, y, *z = (np.array(table.numbers(k)) * factor for k, factor in found.values())
     notes, lines = list(table.notes), list(table.lines)
     if len(x) < 2:
-        raise wrong("has fewer than two points")
+        raise TableError("has fewer than two points", _ALLOWED)
     if z:
-        x, y = _without_lateral(x, y, *z, wrong)
-        notes.append(
-            "heights are read from z, for y does not move"
-            if y is z[0]
-            else "heights are read from y, for z does not move"
-        )
+        lateral = "z" if np.ptp(y) else "y"
+        if np.ptp(y) and np.ptp(*z):
+            raise TableError(
+                "has columns x, y and z that all move",
+                "a profile along one line: x and heights, y (or z) the same in all rows",
+            )
+        y, heights = (y, "y") if lateral == "z" else (*z, "z")
+        notes.append(f"heights are read from {heights}, for {lateral} does not move")
     if x[0] > x[-1]:
         x, y, lines = x[::-1], y[::-1], lines[::-1]
-    for before, after, line in zip(x, x[1:], lines[1:], strict=False):
-        if not after > before:
-            raise wrong(f"is not single-valued: x does not increase in row {line}")
+    falls = np.flatnonzero(~(np.diff(x) > 0))
+    if len(falls):
+        line = lines[falls[0] + 1]
+        raise TableError(f"is not single-valued: x does not increase in row {line}", _ALLOWED)
     width = x[-1] - x[0]
     if not NARROWEST <= width <= WIDEST:
         size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
-        name = table.header[next(iter(found.values()))[0]]
-        raise wrong(
+        name = table.header[found["x"][0]]
+        raise TableError(
             f"is {size} wide by its column '{name}'",
             "10 um to 10 m; is the unit another one, um, mm or m?",
         )
-    return tuple(x), tuple(y), tuple(f"{path.name}: {note}" for note in notes)
+    return tuple(x.tolist()), tuple(y.tolist()), tuple(f"{path.name}: {note}" for note in notes)
 
 
-def _profile_columns(header: tuple[str, ...]) -> dict[str, tuple[int, float]]:
+def _profile_columns(table: Table) -> dict[str, tuple[int, float]]:
     """x, the heights, and z where there are both y and z -> where the column is, and its unit in m.
     Raises `TableError`.
     """
-    found: dict[str, tuple[int, float]] = {}
-    for k, name in enumerate(header):
-        if match := _COLUMN.fullmatch(name):
-            unit = next(part for part in match.groups()[1:] if part is not None)
-            if (what := match[1].lower()) in found:
-                both = f"'{header[found[what][0]][:30]}' and '{name[:30]}'"
-                raise TableError(f"has two columns of {what}: {both}", f"one column of {what}")
-            try:
-                found[what] = k, parse_quantity(f"1 {unit}", "length")
-            except QuantityError as error:
-                raise TableError(
-                    f"has the column '{name}', which {error.problem}",
-                    "'x (mm)', 'y (mm)', or um, or m",
-                ) from None
+    allowed = "the columns 'x (mm)' and 'y (mm)', or um, or m"
+    found = columns_with_units(table, dict.fromkeys("xyz", "length"), allowed)
     for name in ("x", "y"):
         if name not in found and not (name == "y" and "z" in found):
-            columns = ", ".join(f"'{name[:30]}'" for name in header[:6])
-            raise TableError(
-                f"has no column '{name} (mm)', but {columns}",
-                "the columns 'x (mm)' and 'y (mm)', or um, or m",
-            )
+            columns = ", ".join(f"'{name[:30]}'" for name in table.header[:6])
+            raise TableError(f"has no column '{name} (mm)', but {columns}", allowed)
     return {name: found[name] for name in "xyz" if name in found}
-
-
-def _without_lateral(x: list[float], y: list[float], z: list[float], wrong: Callable[..., Problem]):
-    """The two of three columns in which a profile runs. Raises `Problem` where all three move."""
-    if max(y) == min(y):
-        return x, z
-    if max(z) == min(z):
-        return x, y
-    raise wrong(
-        "has columns x, y and z that all move",
-        "a profile along one line: x and heights, y (or z) the same in all rows",
-    )
 
 
 class Points(Curve):
@@ -330,11 +278,10 @@ class Points(Curve):
         if not self.smoothing and not is_rough(*self.measured, max(spacing, SKIN_EDGE)):
             return None
         x, _ = self.measured
-        apart, cutoff = (
-            float(np.median(np.diff(x))),
-            max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE)),
-        )
+        apart = float(np.median(np.diff(x)))
+        cutoff = max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE))
         return (
-            f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, the nodes {spacing * 1e6:.3g} um: "
+            f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, "
+            f"the nodes {spacing * 1e6:.3g} um: "
             f'stimulus.smooth: "{cutoff * 1e6:.0f} um" or more'
         )

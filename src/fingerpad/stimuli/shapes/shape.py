@@ -7,12 +7,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from inspect import get_annotations
+from operator import attrgetter
 from typing import Annotated, Any
 
-from pydantic import ValidationInfo
-from pydantic_core import core_schema
-
 from fingerpad.documents import HIDE, Problem, Strict, nearest
+from fingerpad.fields import OneOf
 from fingerpad.stimuli.curve import Curve
 from fingerpad.stimuli.profile import Profile
 
@@ -39,7 +38,7 @@ class Shape(Strict, Profile):
 
 
 class CurvedShape(Shape):
-    """A shape whose surface is a :class:`fingerpad.stimuli.curve.Curve`."""
+    """A shape whose surface is a :class:`fingerpad.stimuli.curve.Curve`, and answers as it does."""
 
     @cached_property
     def curve(self) -> Curve:
@@ -57,80 +56,41 @@ class CurvedShape(Shape):
         copied.__dict__.pop("curve", None)
         return copied
 
-    def evaluate(self, points):
-        return self.curve.evaluate(points)
 
-    def outline(self, x):
-        return self.curve.outline(x)
+for _name in (
+    *("evaluate", "outline", "corners", "cutoffs", "felt", "at", "advice", "segments"),
+    *("symmetric", "uneven", "irregular", "steepness", "convexity", "dip", "reach", "known"),
+):
+    setattr(CurvedShape, _name, property(attrgetter(f"curve.{_name}")))
 
-    def corners(self):
-        return self.curve.corners()
 
-    def cutoffs(self, edge):
-        return self.curve.cutoffs(edge)
-
-    def felt(self, edge):
-        return self.curve.felt(edge)
-
-    def at(self, smoothing, edge):
-        return self.curve.at(smoothing, edge)
-
-    def advice(self, spacing):
-        return self.curve.advice(spacing)
-
-    @property
-    def segments(self):
-        """Pieces of the surface from left to right."""
-        return self.curve.segments
-
-    symmetric = property(lambda self: self.curve.symmetric)
-    uneven = property(lambda self: self.curve.uneven)
-    irregular = property(lambda self: self.curve.irregular)
-    steepness = property(lambda self: self.curve.steepness)
-    convexity = property(lambda self: self.curve.convexity)
-    dip = property(lambda self: self.curve.dip)
-    reach = property(lambda self: self.curve.reach)
-    known = property(lambda self: self.curve.known)
+def _shape_of(value: Any) -> type[Shape]:
+    """The kind of a shape, or of the mapping that describes one."""
+    if isinstance(value, Shape):
+        return type(value)
+    if not isinstance(value, Mapping):
+        raise Problem(
+            "is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}'
+        )
+    if "shape" not in value:
+        raise Problem("is missing", ", ".join(SHAPES), ("shape",), HIDE)
+    name = value["shape"]
+    if not isinstance(name, str) or name not in SHAPES:
+        raise Problem(f"is not a known shape{nearest(name, SHAPES)}", ", ".join(SHAPES), ("shape",))
+    return SHAPES[name]
 
 
 def shape_from(data: Mapping[str, Any], context: Any = None) -> Shape:
     """The shape that `data` describes: SI numbers, or with the `context` of a document text with
     units.
 
-    Raises:
-        Problem, ValidationError: it is none, or one of its values is wrong.
+    Raises
+    ------
+    Problem, ValidationError
+        It is none, or one of its values is wrong.
     """
-    if "shape" not in data:
-        raise Problem("is missing", ", ".join(SHAPES), ("shape",), HIDE)
-    name = data["shape"]
-    if not isinstance(name, str) or name not in SHAPES:
-        raise Problem(f"is not a known shape{nearest(name, SHAPES)}", ", ".join(SHAPES), ("shape",))
-    return SHAPES[name].model_validate(dict(data), context=context)
+    return _shape_of(data).model_validate(data, context=context)
 
 
-def _read(value: Any, info: ValidationInfo) -> Shape:
-    if isinstance(value, Shape):
-        return value
-    if not isinstance(value, Mapping):
-        raise Problem(
-            "is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}'
-        )
-    return shape_from(value, info.context)
-
-
-class _AnyShape:
-    """Any of the registered shapes, those that register later included."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
-        return core_schema.with_info_plain_validator_function(_read)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: Any
-    ) -> dict[str, Any]:
-        return handler(
-            core_schema.union_schema([shape.__pydantic_core_schema__ for shape in SHAPES.values()])
-        )
-
-
-Stimulus = Annotated[Shape, _AnyShape()]
+Stimulus = Annotated[Shape, OneOf(_shape_of, SHAPES)]
 """Field type: what touches the pad."""
