@@ -47,7 +47,7 @@ def _page(*parts: str) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-# -- gallery and tables --------------------------------------------------------------------------------------------------------
+# --- gallery and tables ---------------------------------------------------------------------------
 
 GRID = "::::{grid} 1 1 2 2\n:gutter: 3"
 CHAPTERS = {
@@ -173,7 +173,7 @@ def tables() -> Iterator[tuple[str, str]]:
     yield "tables/index.md", _page("# Tables", said, "\n".join(listed), "\n".join(tree))
 
 
-# -- the language, from the typed models ----------------------------------------------------------------------------------------
+# --- the language, from the typed models ----------------------------------------------------------
 
 DOCUMENTS = {
     "scene": (
@@ -296,7 +296,7 @@ def _bounds(part: Mapping) -> str:
     )
 
 
-# -- command line and results ---------------------------------------------------------------------------------------------------
+# --- command line and results ---------------------------------------------------------------------
 
 
 def command_line() -> str:

@@ -31,16 +31,12 @@ def picture(path: Path, alt: str) -> str:
     """A picture, still or moving, as part of the page itself."""
     kind = mimetypes.guess_type(path.name)[0] or "image/png"
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    if kind.startswith("video/"):
-        return (
-            f'<video controls loop src="data:{kind};base64,{data}" style="max-width: 100%"></video>'
-        )
     return f'<img alt="{html.escape(alt)}" src="data:{kind};base64,{data}">'
 
 
 def of_markdown(text: str) -> str:
     """Markdown with its tables as HTML; tables wider than the page scroll by themselves."""
-    made = MarkdownIt("commonmark").enable("table").render(text)
-    return made.replace("<table>", '<div class="table"><table>').replace(
+    text = MarkdownIt("commonmark").enable("table").render(text)
+    return text.replace("<table>", '<div class="table"><table>').replace(
         "</table>", "</table></div>"
     )

@@ -40,7 +40,7 @@ RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rap
 TABLES = ("thesis_comparison", "sensitivity")
 PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings")
 """What is part of the default target beside figures and simulations."""
-SHOWN = ("picture", "pictures", "table", "tables", "gifs", "films")
+SHOWN = ("picture", "pictures", "table", "tables", "gifs")
 """Outputs that are for people."""
 UNTOLD = ("files", "scene_files", "measured", "written")
 """Inputs that a job finds by itself, beside others or named in them, and what only says when to run
@@ -473,15 +473,13 @@ class Products:
             yield Job("catalogue", read, {"readme": ["figures/README.md"]}, {"titles": [titles]})
 
     def animations(self) -> Iterator[Job]:
-        """Moving pictures, each as GIF and as film."""
+        """Moving pictures."""
         if scenes := self.config.animations:
-            names = [f"{self.config.studies}/animation_{scene}" for scene in scenes]
-            films = [f"{self.config.studies}/film_{scene}.webm" for scene in scenes]
-            made = {"gifs": [f"{name}.gif" for name in names], "films": films}
+            gifs = [f"{self.config.studies}/animation_{scene}.gif" for scene in scenes]
             yield Job(
                 "animations",
                 {"histories": [self._anywhere(scene) for scene in scenes]},
-                made,
+                {"gifs": gifs},
                 priority=1,
             )
 
@@ -1017,7 +1015,7 @@ class Products:
             ]
             yield self._pages(f"Chapter {chapter}", shown, titles=titles)
         others = (
-            ("Studies", c.studies, (".png", ".gif", ".webm", ".mp4")),
+            ("Studies", c.studies, (".png", ".gif")),
             ("Tables", c.tables, (".csv",)),
         )
         for category, folder, endings in others:

@@ -1,10 +1,10 @@
-"""The full fields of histories -> moving pictures, as GIF and as film."""
+"""The full fields of histories -> moving pictures."""
 
 from cysyk1999.figures.animation import animate
 from fingerpad.results import read_history
 
 
 def run(job):
-    """`histories` -> `gifs`, `films`."""
-    for history, gif, film in zip(job.histories, job.gifs, job.films, strict=True):
-        animate(read_history(history), gif, film)
+    """`histories` -> `gifs`."""
+    for history, gif in zip(job.histories, job.gifs, strict=True):
+        animate(read_history(history), gif)
