@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import argparse
 import csv
+import io
 import json
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import redirect_stdout, suppress
 from pathlib import Path
 
+from PIL import Image
 from published import ROOT, verdict
+
+from cysyk1999.config import schemas
+from cysyk1999.figures.registry import FIGURES
+from fingerpad import cli
+from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 
 DOCS = ROOT / "docs"
 GENERATED = DOCS / "generated"
@@ -65,8 +72,6 @@ def shown() -> dict[str, dict[str, str]]:
 
 def gallery() -> Iterator[tuple[str, str]]:
     """A page a chapter and one of the studies: each picture with its question, verdict, command and data."""
-    from cysyk1999.figures.registry import FIGURES
-
     known = shown()
     for name, (title, prefix) in CHAPTERS.items():
         numbers = [
@@ -133,8 +138,6 @@ def _card(name: str, title: str, known: Mapping[str, Mapping[str, str]], judged:
 
 def _thumbnail(picture: Path) -> str:
     """A small copy of a picture, by its path from a page of the gallery; of a moving one its middle."""
-    from PIL import Image
-
     small = GENERATED / "gallery" / f"{picture.stem}.png"
     if not small.exists() or small.stat().st_mtime < picture.stat().st_mtime:
         small.parent.mkdir(parents=True, exist_ok=True)
@@ -198,8 +201,6 @@ DOCUMENTS = {
 
 def language() -> Iterator[tuple[str, str]]:
     """A page a kind of YAML file, from the schemas that are made of the typed models."""
-    from cysyk1999.config import schemas
-
     made, said = schemas(), set()
     for kind in sorted(
         made, key=lambda kind: kind != "scene"
@@ -301,22 +302,22 @@ def _bounds(part: Mapping) -> str:
 
 def command_line() -> str:
     """What `fingerpad` and its commands say of themselves."""
-    from fingerpad import cli
-
-    parser = cli._parser()
-    (commands,) = (
-        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
-    )
     parts = ["# Command line", cli.__doc__.split("\n\n")[1].replace("\n", " ")]
-    for name, command in commands.choices.items():
-        command.formatter_class = lambda prog: argparse.HelpFormatter(prog, width=92)
-        parts += [f"## fingerpad {name}", f"```text\n{command.format_help().strip()}\n```"]
+    for name in re.findall(r"^    (\w+)  ", _help(), re.M):
+        parts += [f"## fingerpad {name}", f"```text\n{_help(name)}\n```"]
     return _page(*parts)
+
+
+def _help(*words: str) -> str:
+    """What a command prints when asked for help."""
+    text = io.StringIO()
+    with redirect_stdout(text), suppress(SystemExit):
+        cli.main([*words, "--help"])
+    return text.getvalue().strip()
 
 
 def results() -> str:
     """What a history holds, from the table by which it is written."""
-    from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 
     def rows(entries) -> str:
         return "\n".join(

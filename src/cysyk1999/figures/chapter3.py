@@ -525,7 +525,8 @@ FIGURES = (
         rows=deflections,
         measured="surface_profiles",
         note=noted(
-            "Lines: simulated, not measured. {error}. Points: measured (MIT Touch Lab; digitised by a third party)."
+            "Lines: simulated, not measured. {error}. Points: measured (MIT Touch Lab; digitised by a "
+            "third party)."
         ),
     ),
     Figure(
@@ -539,7 +540,8 @@ FIGURES = (
         rows=forces_over_depth,
         measured="force_depth",
         note=noted(
-            "Lines: simulated, not measured. {error}. Points: measured (Dandekar et al. 2003, digitised by others)."
+            "Lines: simulated, not measured. {error}. Points: measured (Dandekar et al. 2003, "
+            "digitised by others)."
         ),
     ),
     held(
@@ -622,8 +624,8 @@ FIGURES = (
             sections, panels=SECTIONS, layers=("corneum", "dermis", "fat", "bone"), before=True
         ),
         note=noted(
-            "Simulated, not measured. {error} (of the layers). As in the thesis, without the stratum "
-            "corneum."
+            "Simulated, not measured. {error} (of the layers). As in the thesis, without the "
+            "stratum corneum."
         ),
     ),
 )

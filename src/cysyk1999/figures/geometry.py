@@ -28,7 +28,10 @@ from fingerpad.specimen.pad import PadMesh, element_edges
 
 LAYERS = tuple(style.LAYER_COLOURS)
 """Layers from the outside in, and the bone."""
-NOTE = "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not available."
+NOTE = (
+    "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not "
+    "available."
+)
 
 
 def stratum_corneum(history: Dataset) -> float:
