@@ -239,7 +239,7 @@ def test_labels_keep_their_order_and_distance(values):
     )
 
 
-# --- geometry ------------------------------------------------------------------------------------------
+# --- geometry -------------------------------------------------------------------------------------
 
 
 def test_boundaries_are_closed_and_offset_by_the_layers_thickness():
@@ -277,7 +277,7 @@ def test_mesh_figure_shows_every_element_once_in_five_shades():
     )
 
 
-# --- specs, files and tables ---------------------------------------------------------------------------
+# --- specs, files and tables ----------------------------------------------------------------------
 
 
 def test_a_failed_write_leaves_the_old_files(tmp_path, monkeypatch):
@@ -304,7 +304,7 @@ def test_reference_table_is_checked(tmp_path):
         read_reference(path)
 
 
-# --- what the regression tests notice ------------------------------------------------------------------
+# --- what the regression tests notice -------------------------------------------------------------
 
 
 LENGTHS = (

@@ -148,7 +148,7 @@ def test_panels_are_lettered_from_a(number):
     assert tags == list("abcdefghijklmnopqrstuvwxyz")[: len(tags)] and len(tags) != 1
 
 
-# --- what the thesis says --------------------------------------------------------------------------------
+# --- what the thesis says -------------------------------------------------------------------------
 
 
 SAYS = statement_row(

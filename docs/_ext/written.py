@@ -1,4 +1,6 @@
-"""Pages written at each build, into docs/generated: gallery, tables, reference of the language, command line and results."""
+"""Pages written at each build, into docs/generated: gallery, tables, reference of the language,
+command line and results.
+"""
 
 from __future__ import annotations
 
@@ -65,13 +67,17 @@ CHAPTERS = {
 
 
 def shown() -> dict[str, dict[str, str]]:
-    """docs/gallery.csv: published file without its ending -> what it answers, and the command if it is no target."""
+    """docs/gallery.csv: published file without its ending -> what it answers, and the command if it
+    is no target.
+    """
     with open(DOCS / "gallery.csv", encoding="utf-8", newline="") as file:
         return {row.pop("file"): row for row in csv.DictReader(file)}
 
 
 def gallery() -> Iterator[tuple[str, str]]:
-    """A page a chapter and one of the studies: each picture with its question, verdict, command and data."""
+    """A page a chapter and one of the studies: each picture with its question, verdict, command and
+    data.
+    """
     known = shown()
     for name, (title, prefix) in CHAPTERS.items():
         numbers = [
@@ -137,7 +143,9 @@ def _card(name: str, title: str, known: Mapping[str, Mapping[str, str]], judged:
 
 
 def _thumbnail(picture: Path) -> str:
-    """A small copy of a picture, by its path from a page of the gallery; of a moving one its middle."""
+    """A small copy of a picture, by its path from a page of the gallery; of a moving one its
+    middle.
+    """
     small = GENERATED / "gallery" / f"{picture.stem}.png"
     if not small.exists() or small.stat().st_mtime < picture.stat().st_mtime:
         small.parent.mkdir(parents=True, exist_ok=True)
@@ -185,7 +193,8 @@ DOCUMENTS = {
     ),
     "specimen": (
         "Specimen",
-        "A pad, in a file that scenes name: `{outline: thesis}` is that of `config/specimens/thesis.yaml`.",
+        "A pad, in a file that scenes name: `{outline: thesis}` is that of "
+        "`config/specimens/thesis.yaml`.",
     ),
     "sweep": ("Sweep", "One scene to thousands."),
     "reconstruction": (
@@ -336,8 +345,9 @@ def results() -> str:
     fields = rows((name, unit, said) for name, (_, unit, _, said) in FIELDS.items())
     return _page(
         "# Results",
-        "A run leaves `history.nc` (everything over time, with plan, scene, cost and provenance in its attributes), "
-        "`summary.json` (how each leg ended) and `plan.json`. SI inside; units stand in every attribute and column name.",
+        "A run leaves `history.nc` (everything over time, with plan, scene, cost and provenance in "
+        "its attributes), `summary.json` (how each leg ended) and `plan.json`. SI inside; units "
+        "stand in every attribute and column name.",
         "## Variables of a history",
         described,
         "## Coordinates",

@@ -525,8 +525,8 @@ FIGURES = (
         rows=deflections,
         measured="surface_profiles",
         note=noted(
-            "Lines: simulated, not measured. {error}. Points: measured (MIT Touch Lab; digitised by a "
-            "third party)."
+            "Lines: simulated, not measured. {error}. Points: measured (MIT Touch Lab; digitised "
+            "by a third party)."
         ),
     ),
     Figure(

@@ -10,11 +10,13 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 1.2rem 1.6rem; }
+body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff;
+  margin: 1.2rem 1.6rem; }
 h1 { font-size: 1.25rem; } h2 { font-size: 1.05rem; }
 img { display: block; max-width: 100%; max-height: 82vh; margin: 0.6rem 0; }
 table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.7rem 0.15rem 0; border-bottom: 1px solid #ddd; }
+th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.7rem 0.15rem 0;
+  border-bottom: 1px solid #ddd; }
 div.table { overflow-x: auto; }
 footer { margin-top: 1rem; color: #555; font-size: 0.85rem; }
 """
