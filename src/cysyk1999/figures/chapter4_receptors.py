@@ -11,13 +11,11 @@ another model's in panels of their own. A user's recordings under the same proto
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Picture
 from pandas import DataFrame
 from xarray import Dataset
 
@@ -614,34 +612,29 @@ def left_note(frame: DataFrame) -> list[str]:
     return axs.footnote(frame[left], OF_THE_LARGEST)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Beside:
+def own_and_others(fig, frame, spec, fill, ratios, others, names=(None,)):
     """Panels of predicted rates (values of ``panel``; None: what is in none), and at their right
-    rates of others, with ours.
+    rates of `others` (panel -> title and what differs), with ours.
     """
+    if "panel" not in frame:
+        frame = frame.assign(panel=np.nan)
+    axes = fig.subplots(1, len(ratios), width_ratios=ratios)
+    for ax, name in zip(axes, names, strict=False):
+        ranges = frame["source"].str.contains("axis range")
+        own = frame["panel"] == name if name else frame["panel"].isna()
+        fill(ax, frame[own | ranges], spec)
+        ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
+    axes[0].set_ylabel(spec.y[0].label)
+    right = axes[len(names) :]
+    for ax, (name, (title, mismatch)) in zip(right, others.items(), strict=True):
+        beside(ax, frame[frame["panel"] == name], title, mismatch)
+        ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
 
-    fill: Callable
-    ratios: Sequence[float]
-    others: Mapping[str, tuple[str, str]]
-    names: Sequence[str | None] = (None,)
-    height: float = 3.1
-    header: float = 0.0
 
-    def draw(self, fig: Picture, frame: DataFrame, spec: Figure) -> None:
-        """Draw the panels on a page."""
-        if "panel" not in frame:
-            frame = frame.assign(panel=np.nan)
-        axes = fig.subplots(1, len(self.ratios), width_ratios=self.ratios)
-        for ax, name in zip(axes, self.names, strict=False):
-            ranges = frame["source"].str.contains("axis range")
-            own = frame["panel"] == name if name else frame["panel"].isna()
-            self.fill(ax, frame[own | ranges], spec)
-            ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
-        axes[0].set_ylabel(spec.y[0].label)
-        right = axes[len(self.names) :]
-        for ax, (name, (title, mismatch)) in zip(right, self.others.items(), strict=True):
-            beside(ax, frame[frame["panel"] == name], title, mismatch)
-            ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
+def page_of(fill, ratios, others, **options) -> Page:
+    """A page of predicted rates and those of others."""
+    draw = partial(own_and_others, fill=fill, ratios=ratios, others=others, **options)
+    return Page(3.1, draw)
 
 
 def points_and_law(ax, rows, spec, words="predicted by Eq 5-1", legend=LOWER_RIGHT):
@@ -733,7 +726,7 @@ def from_depth(number: str, depth: float, axis: str) -> Figure:
         number,
         title,
         partial(mean_rates, depth=depth),
-        Beside(fill=draw_rates, ratios=(1.7, 1, 1), others=others),
+        page_of(fill=draw_rates, ratios=(1.7, 1, 1), others=others),
         {GIVEN_RATE: axis, CURVATURE: "T202"},
         runs=(NINE, *LOWER.values()),
         note=left_note,
@@ -823,7 +816,7 @@ FIGURES = (
         "4-19",
         "Mean rate from mean contact pressure, against curvature",
         linear_in_pressure,
-        Beside(fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
+        page_of(fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
         {GIVEN_RATE: "T161", CURVATURE: "T162"},
     ),
     Figure(
@@ -851,7 +844,7 @@ FIGURES = (
         "4-29",
         "Predicted peak rate, and from the peak rate of strain energy, against curvature",
         peak_rates,
-        Beside(
+        page_of(
             fill=points_and_law,
             ratios=(1.25, 1.25, 1),
             names=("600 um", "915 um"),

@@ -49,11 +49,11 @@ LOOKS = {
 def elements(data: Data) -> DataFrame:
     """Elements of the ridged pad within the thesis's window."""
     rows = mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))
-    other = rows["series"] != "element"
-    rows = rows[other | (rows[X].abs().le(WINDOW[0] + 2.5) & rows[Y].ge(-2.5))]
+    inside = rows[X].abs().le(WINDOW[0] + 2.5) & rows[Y].ge(-2.5)
+    rows = rows[(rows["series"] != "element") | inside]
     # elements cut by the window's edge are left out
     whole = rows.groupby("element")[Y].transform("size") >= 4
-    return rows[other | whole].reset_index(drop=True)
+    return rows[(rows["series"] != "element") | whole].reset_index(drop=True)
 
 
 def mesh_and_detail(fig, frame, spec):
