@@ -206,5 +206,5 @@ def test_a_press_moves_and_no_singular_point_owns_the_colours(tmp_path):
         animate(values, tmp_path / f"{name}.gif")
     with Image.open(tmp_path / "a.gif") as one, Image.open(tmp_path / "b.gif") as other:
         assert one.n_frames == done.sizes["snapshot"] <= MOST_FRAMES
-        same = np.asarray(one.convert("RGB"), int) == np.asarray(other.convert("RGB"), int)
-    assert same.mean() > 0.99  # but for the hot element itself
+        apart = np.asarray(one.convert("RGB"), int) - np.asarray(other.convert("RGB"), int)
+    assert (abs(apart) < 16).mean() > 0.99  # but for the hot element itself
