@@ -20,12 +20,11 @@ from pandas import DataFrame
 from PIL import Image
 from xarray import Dataset
 
-from cysyk1999.figures.grammar import upper_profile
 from cysyk1999.measures.quantities import IMPULSE_RATE, SED, TIME
 from cysyk1999.measures.responses import curvature_of, is_stroke, predicted_rate
 from cysyk1999.publishing import style
 from fingerpad.files import write_atomically
-from fingerpad.measures.features import PRESSURE, force_gf
+from fingerpad.measures.features import PRESSURE, force_gf, profile
 from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.results import scene_of
@@ -91,6 +90,7 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     x, y = rest[cells].mean(axis=1).T
     values, norm, label = _coloured(history, (y > JUDGED) & (abs(x) < 8))
     borders = _borders(cells, history["element_region"].values)
+    upper = history["skin_y"].values > 0
     stroke, rate, force = is_stroke(history), predicted_rate(history), force_gf(history)
     distance = 1e3 * history["stroke_distance"].values if stroke else np.zeros(len(time))
 
@@ -135,8 +135,8 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         body.set_verts(points[k][cells])
         body.set_array(values[k])
         lines.set_segments(points[k][borders])
-        place, pressure = upper_profile(history, index)
-        curve.set_data(1e3 * place, 1e-3 * pressure)
+        place, pressure = profile(history, index)
+        curve.set_data(1e3 * place[upper], 1e-3 * pressure[upper])
         for column, dot in dots.items():
             dot.set_data([time[index]], [np.interp(time[index], rate[TIME], rate[column])])
         moved = f"{distance[index]:5.1f} mm   " if stroke else ""
