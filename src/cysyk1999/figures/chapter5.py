@@ -394,11 +394,11 @@ FIGURES = (
         "Centre pressure and scaled skin curvature, 10 mm/s",
         TEN_RUN,
         STROKE_TIME,
-        (CENTRE, SCALED_CURVATURE),
+        (P_CENTRE, SCALED_CURVATURE),
         {TIME: "T257", P_CENTRE: "T256"},
         Panels(height=3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
         rows=lambda data: data.strokes(
-            (TEN_RUN,), (DISTANCE, STROKE_TIME, CENTRE, SCALED_CURVATURE), (0, 80)
+            (TEN_RUN,), (DISTANCE, STROKE_TIME, P_CENTRE, SCALED_CURVATURE), (0, 80)
         ),
         surface=(0, 80),
     ),
