@@ -1,4 +1,6 @@
-"""How the documentation is built: ``make docs``. Its tutorials are run, and its numbers read from figures/, whenever it is."""
+"""How the documentation is built: ``make docs``. Its tutorials are run, and its numbers read from
+figures/, whenever it is.
+"""
 
 import os
 import sys

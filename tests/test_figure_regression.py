@@ -81,7 +81,7 @@ def test_data_of_a_coarse_simulation_are_those_of_the_baseline(reference, number
     assert not changed, f"{changed}{ACCEPT}"
 
 
-# -- strokes --------------------------------------------------------------------------------------------------------------
+# --- strokes --------------------------------------------------------------------------------------
 
 STROKED = [
     number for number in FIGURES if number.startswith("5-") and number not in ("5-25", "5-26")
@@ -195,7 +195,7 @@ def test_made_up_histories_have_what_simulated_ones_have(name):
     )
 
 
-# -- what is published ----------------------------------------------------------------------------------------------------
+# --- what is published ----------------------------------------------------------------------------
 
 
 def test_published_data_are_those_of_the_summary():

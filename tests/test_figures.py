@@ -4,24 +4,20 @@ whole.
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.optimize import isotonic_regression
 
 import synthetic
 from cysyk1999.figures.geometry import boundaries, inward, loops
-from cysyk1999.figures.grammar import Panels, edged_profile, upper_profile
+from cysyk1999.figures.grammar import edged_profile, upper_profile
 from cysyk1999.figures.registry import CHAPTERS, FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, STEPS
 from cysyk1999.measures.quantities import CURVATURE, RADIUS
-from cysyk1999.measures.table import MEASURES, reading
-from cysyk1999.publishing.style import COLOURS, INK, finished, spread, theme
+from cysyk1999.publishing.style import spread
 from cysyk1999.publishing.write import publish, without_round_off, write_frame, write_picture
 from cysyk1999.reference_data import empty_reference, read_reference
 from drawn import RATES, REFERENCE, frame, picture, results, saved
@@ -100,20 +96,12 @@ def test_frame_needs_only_the_scenes_it_names_and_neither_companions_nor_the_ref
     assert set(companions) <= set(spec.needs)
     only = (
         {name: histories[name] for name in spec.needs},
-        {name: meshes[name] for name in spec.needs if spec.meshes},
+        {name: meshes[name] for name in spec.needs},
     )
     spec.frame(*only, companions, reference)
     bare = spec.frame(*only, {}, empty_reference())
     assert ft.is_simulated(bare).all() and bare[[MESH, STEPS]].isna().all(axis=None)
-
-
-@pytest.mark.parametrize(
-    "number",
-    ["3-6", "3-8", "4-6", "4-8", "4-10", "4-14", "4-20", "4-29", "5-5", "5-12", "5-16", "5-26"],
-)
-def test_picture_works_without_the_reference(number):
-    histories, meshes, _, _ = results()
-    FIGURES[number].draw(FIGURES[number].frame(histories, meshes, {}, empty_reference()))
+    assert spec.draw(bare).axes
 
 
 def left_on_meshes(number: str) -> float:
@@ -225,28 +213,6 @@ def test_axis_is_extended_and_marked_where_the_data_leave_the_thesiss():
     assert "thesis axis range" in [t.get_text().replace("\n", " ") for t in ax.texts]
 
 
-def test_phases_of_a_pressure_figure_have_their_line_styles():
-    lines = picture("4-11").axes[-1].lines
-    thick, thin = (
-        max(lines, key=lambda line: line.get_linewidth()),
-        [line.get_color() for line in lines],
-    )
-    assert (
-        thick.get_color() == COLOURS["1260"]
-        and thin.count(INK) == 1
-        and thin.count("0.57") == len(lines) - 2
-    )
-    assert {line.get_linestyle() for line in lines} == {
-        "-"
-    }  # dashes on a dozen nodes look like an asymmetry
-
-
-def test_scaled_pressure_is_the_centre_pressure_times_four_hundredths():
-    made = frame("4-21")
-    top = made.loc[made["surface"] == "79", "scaled_centre_pressure (Pa)"].max()
-    assert top == pytest.approx(0.04 * results()[0]["ramp40_k79"]["centre_pressure"].values.max())
-
-
 def test_energy_rate_keeps_the_jump_at_the_top_of_the_ramp():
     history = results()[0]["ramp40_k210"]
     rate = ft.energy_rate(history, 915e-6)
@@ -255,11 +221,6 @@ def test_energy_rate_keeps_the_jump_at_the_top_of_the_ramp():
     rising = ft.energy(history, 915e-6)[ft.ramp_end(history)]
     ramp = rate.iloc[: ft.ramp_end(history) + 1].to_numpy()
     assert np.trapezoid(ramp[:, 1], ramp[:, 0]) == pytest.approx(rising, rel=0.02)
-
-
-def test_missing_receptor_is_named():
-    with pytest.raises(KeyError, match="depth 700 um"):
-        ft.energy(results()[0]["ramp40_flat"], 700e-6)
 
 
 def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
@@ -278,28 +239,7 @@ def test_labels_keep_their_order_and_distance(values):
     )
 
 
-def test_powers_of_ten_are_mathematics_and_ticks_are_text(tmp_path):
-    """Mutants: powers as text (1e6); ticks as mathematics, which take a quarter of a picture's
-    time.
-    """
-    with theme():
-        fig = mpl.figure.Figure()
-        ax = fig.subplots()
-        ax.plot([0, 1], [0, 3e7])
-        write_picture(finished(fig), tmp_path / "powers.png")
-    assert ax.yaxis.get_offset_text().get_text() == r"$\times\mathdefault{10^{7}}\mathdefault{}$"
-    assert not any("$" in label.get_text() for label in ax.get_yticklabels())
-
-
-def test_labels_are_as_near_to_what_they_name_as_their_order_allows():
-    rng = np.random.default_rng(3)
-    for count in (1, 2, 9, 20):
-        values = np.sort(rng.normal(size=count))
-        truth = isotonic_regression(values - 0.3 * np.arange(count)).x + 0.3 * np.arange(count)
-        np.testing.assert_allclose(spread(values, 0.3, -1e9, 1e9), truth, atol=1e-12)
-
-
-# --- geometry ------------------------------------------------------------------------------------------
+# --- geometry -------------------------------------------------------------------------------------
 
 
 def test_boundaries_are_closed_and_offset_by_the_layers_thickness():
@@ -337,21 +277,7 @@ def test_mesh_figure_shows_every_element_once_in_five_shades():
     )
 
 
-# --- specs, files and tables ---------------------------------------------------------------------------
-
-
-def test_an_unknown_option_of_a_layout_is_refused():
-    with pytest.raises(TypeError, match="colour"):
-        Panels(height=4.0, colour="red")
-
-
-def test_listing_the_figures_loads_neither_mechanics_nor_matplotlib():
-    code = (
-        "import cysyk1999.figures.registry, sys;"
-        "print([m for m in sys.modules if m == 'matplotlib' or 'fingerpad.mechanics' in m])"
-    )
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert out.stdout.strip() == "[]"
+# --- specs, files and tables ----------------------------------------------------------------------
 
 
 def test_a_failed_write_leaves_the_old_files(tmp_path, monkeypatch):
@@ -378,7 +304,7 @@ def test_reference_table_is_checked(tmp_path):
         read_reference(path)
 
 
-# --- what the regression tests notice ------------------------------------------------------------------
+# --- what the regression tests notice -------------------------------------------------------------
 
 
 LENGTHS = (
@@ -448,15 +374,6 @@ def test_panels_of_pairs_have_axes_of_their_own():
     assert [ax.get_xlabel() for ax in (first, second)] == [CURVATURE.label, RADIUS.label]
     (bends,), (radii,) = ([line.get_xdata() for line in ax.get_lines()] for ax in (first, second))
     np.testing.assert_allclose(np.sort(1e3 / bends), radii, rtol=1e-4)
-
-
-def test_a_reading_is_the_measure_of_its_name():
-    history = synthetic.history("ramp40_k210")
-    assert (
-        reading("rate", "peak")(history)
-        == MEASURES["rate"](history)["peak"]
-        > reading("rate", "end")(history)
-    )
 
 
 def test_round_off_is_published_as_zero():

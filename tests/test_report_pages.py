@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from cysyk1999.publishing.html import of_markdown, page, picture
+from cysyk1999.publishing.html import of_markdown, page
 from cysyk1999.publishing.html import report_pages as run
 
 pytestmark = pytest.mark.unit
@@ -56,10 +56,6 @@ def test_all_of_them_can_be_cited(pages):
     assert all("CITATION.cff" in text and "Cysyk" in text for text in pages)
 
 
-def test_wide_tables_scroll_by_themselves_and_a_film_is_played(tmp_path):
+def test_wide_tables_scroll_by_themselves():
     assert of_markdown("| a |\n|---|\n| 1 |").startswith('<div class="table"><table>')
-    (tmp_path / "film.webm").write_bytes(b"x")
-    assert picture(tmp_path / "film.webm", "film").startswith(
-        '<video controls loop src="data:video/webm;base64,eA=="'
-    )
     assert page("t", "", "<p>x</p>").count("<p>") == 1

@@ -8,7 +8,7 @@ from PIL import Image
 
 import synthetic
 from cysyk1999.claims.comparison import TRENDS
-from cysyk1999.figures.animation import _frames, animate
+from cysyk1999.figures.animation import animate, drawn
 from cysyk1999.measures.table import MEASURES, Measures
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import (
@@ -365,7 +365,7 @@ def test_animation_has_a_frame_a_snapshot_and_the_same_bytes_again(made, tmp_pat
 
 def test_a_frame_shows_nothing_of_the_frame_before(made):
     (_, *two), (_, *turned) = (
-        _frames(made["stroke_10"].isel(snapshot=list(order)))[0] for order in ((0, 3, 7), (0, 7, 3))
+        drawn(made["stroke_10"].isel(snapshot=list(order))) for order in ((0, 3, 7), (0, 7, 3))
     )
     assert all(np.array_equal(a, b) for a, b in zip(two, reversed(turned), strict=True))
 

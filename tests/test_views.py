@@ -196,16 +196,15 @@ def test_candidates_are_ranked_by_the_median_of_recorded_sets():
 # --- moving pictures -----------------------------------------------------------------------------
 
 
-def test_a_press_moves_in_a_gif_and_in_a_film_and_no_singular_point_owns_the_colours(tmp_path):
+def test_a_press_moves_and_no_singular_point_owns_the_colours(tmp_path):
     done = history("fields_k210").copy()
     hot = done["snapshot_strain_energy_density"].copy()
     hot[
         :, int(np.argmin(done["node_position"].values[done["element_nodes"].values].mean(1)[:, 1]))
     ] *= 1e6
     for name, values in (("a", done), ("b", done.assign(snapshot_strain_energy_density=hot))):
-        animate(values, tmp_path / f"{name}.gif", tmp_path / f"{name}.webm")
+        animate(values, tmp_path / f"{name}.gif")
     with Image.open(tmp_path / "a.gif") as one, Image.open(tmp_path / "b.gif") as other:
         assert one.n_frames == done.sizes["snapshot"] <= MOST_FRAMES
-        same = np.asarray(one.convert("RGB"), int) == np.asarray(other.convert("RGB"), int)
-    assert same.mean() > 0.99  # but for the hot element itself
-    assert (tmp_path / "a.webm").read_bytes()[:4] == b"\x1aE\xdf\xa3"
+        apart = np.asarray(one.convert("RGB"), int) - np.asarray(other.convert("RGB"), int)
+    assert (abs(apart) < 16).mean() > 0.99  # but for the hot element itself

@@ -1,5 +1,6 @@
-"""The package's docstrings as reStructuredText: what goes on over a line's end belongs to its entry, | is a bar, and what is
-indented for no other reason is shown as it is."""
+"""The package's docstrings as reStructuredText: what goes on over a line's end belongs to its
+entry, | is a bar, and what is indented for no other reason is shown as it is.
+"""
 
 import re
 

@@ -1,4 +1,6 @@
-"""What a command prints is one text, however it comes: the notebooks' own merging begins a line at every piece of it."""
+"""What a command prints is one text, however it comes: the notebooks' own merging begins a line at
+every piece of it.
+"""
 
 from myst_nb.core import render
 

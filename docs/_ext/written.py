@@ -1,15 +1,24 @@
-"""Pages written at each build, into docs/generated: gallery, tables, reference of the language, command line and results."""
+"""Pages written at each build, into docs/generated: gallery, tables, reference of the language,
+command line and results.
+"""
 
 from __future__ import annotations
 
-import argparse
 import csv
+import io
 import json
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import redirect_stdout, suppress
 from pathlib import Path
 
+from PIL import Image
 from published import ROOT, verdict
+
+from cysyk1999.config import schemas
+from cysyk1999.figures.registry import FIGURES
+from fingerpad import cli
+from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 
 DOCS = ROOT / "docs"
 GENERATED = DOCS / "generated"
@@ -47,7 +56,7 @@ def _page(*parts: str) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-# -- gallery and tables --------------------------------------------------------------------------------------------------------
+# --- gallery and tables ---------------------------------------------------------------------------
 
 GRID = "::::{grid} 1 1 2 2\n:gutter: 3"
 CHAPTERS = {
@@ -58,15 +67,17 @@ CHAPTERS = {
 
 
 def shown() -> dict[str, dict[str, str]]:
-    """docs/gallery.csv: published file without its ending -> what it answers, and the command if it is no target."""
+    """docs/gallery.csv: published file without its ending -> what it answers, and the command if it
+    is no target.
+    """
     with open(DOCS / "gallery.csv", encoding="utf-8", newline="") as file:
         return {row.pop("file"): row for row in csv.DictReader(file)}
 
 
 def gallery() -> Iterator[tuple[str, str]]:
-    """A page a chapter and one of the studies: each picture with its question, verdict, command and data."""
-    from cysyk1999.figures.registry import FIGURES
-
+    """A page a chapter and one of the studies: each picture with its question, verdict, command and
+    data.
+    """
     known = shown()
     for name, (title, prefix) in CHAPTERS.items():
         numbers = [
@@ -132,9 +143,9 @@ def _card(name: str, title: str, known: Mapping[str, Mapping[str, str]], judged:
 
 
 def _thumbnail(picture: Path) -> str:
-    """A small copy of a picture, by its path from a page of the gallery; of a moving one its middle."""
-    from PIL import Image
-
+    """A small copy of a picture, by its path from a page of the gallery; of a moving one its
+    middle.
+    """
     small = GENERATED / "gallery" / f"{picture.stem}.png"
     if not small.exists() or small.stat().st_mtime < picture.stat().st_mtime:
         small.parent.mkdir(parents=True, exist_ok=True)
@@ -173,7 +184,7 @@ def tables() -> Iterator[tuple[str, str]]:
     yield "tables/index.md", _page("# Tables", said, "\n".join(listed), "\n".join(tree))
 
 
-# -- the language, from the typed models ----------------------------------------------------------------------------------------
+# --- the language, from the typed models ----------------------------------------------------------
 
 DOCUMENTS = {
     "scene": (
@@ -182,7 +193,8 @@ DOCUMENTS = {
     ),
     "specimen": (
         "Specimen",
-        "A pad, in a file that scenes name: `{outline: thesis}` is that of `config/specimens/thesis.yaml`.",
+        "A pad, in a file that scenes name: `{outline: thesis}` is that of "
+        "`config/specimens/thesis.yaml`.",
     ),
     "sweep": ("Sweep", "One scene to thousands."),
     "reconstruction": (
@@ -198,8 +210,6 @@ DOCUMENTS = {
 
 def language() -> Iterator[tuple[str, str]]:
     """A page a kind of YAML file, from the schemas that are made of the typed models."""
-    from cysyk1999.config import schemas
-
     made, said = schemas(), set()
     for kind in sorted(
         made, key=lambda kind: kind != "scene"
@@ -296,27 +306,27 @@ def _bounds(part: Mapping) -> str:
     )
 
 
-# -- command line and results ---------------------------------------------------------------------------------------------------
+# --- command line and results ---------------------------------------------------------------------
 
 
 def command_line() -> str:
     """What `fingerpad` and its commands say of themselves."""
-    from fingerpad import cli
-
-    parser = cli._parser()
-    (commands,) = (
-        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
-    )
     parts = ["# Command line", cli.__doc__.split("\n\n")[1].replace("\n", " ")]
-    for name, command in commands.choices.items():
-        command.formatter_class = lambda prog: argparse.HelpFormatter(prog, width=92)
-        parts += [f"## fingerpad {name}", f"```text\n{command.format_help().strip()}\n```"]
+    for name in re.findall(r"^    (\w+)  ", _help(), re.M):
+        parts += [f"## fingerpad {name}", f"```text\n{_help(name)}\n```"]
     return _page(*parts)
+
+
+def _help(*words: str) -> str:
+    """What a command prints when asked for help."""
+    text = io.StringIO()
+    with redirect_stdout(text), suppress(SystemExit):
+        cli.main([*words, "--help"])
+    return text.getvalue().strip()
 
 
 def results() -> str:
     """What a history holds, from the table by which it is written."""
-    from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 
     def rows(entries) -> str:
         return "\n".join(
@@ -335,8 +345,9 @@ def results() -> str:
     fields = rows((name, unit, said) for name, (_, unit, _, said) in FIELDS.items())
     return _page(
         "# Results",
-        "A run leaves `history.nc` (everything over time, with plan, scene, cost and provenance in its attributes), "
-        "`summary.json` (how each leg ended) and `plan.json`. SI inside; units stand in every attribute and column name.",
+        "A run leaves `history.nc` (everything over time, with plan, scene, cost and provenance in "
+        "its attributes), `summary.json` (how each leg ended) and `plan.json`. SI inside; units "
+        "stand in every attribute and column name.",
         "## Variables of a history",
         described,
         "## Coordinates",

@@ -148,8 +148,8 @@ class WorkflowConfig(Strict):
     has.
     """
     animations: _list(Name) = ()
-    """Scenes to make a moving picture of, animation_<scene>.gif and film_<scene>.webm among the
-    studies; they need snapshots.
+    """Scenes to make a moving picture of, animation_<scene>.gif among the studies; they
+    need snapshots.
     """
     field_scenes: _list(Name) = ()
     """Scenes simulated with whole fields of strain energy at their snapshots, for pictures of what

@@ -8,22 +8,21 @@ axis range, measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from pandas import DataFrame, Series
 
 from cysyk1999.measures.errors import PARTS, SHOWN_ABOVE, norm, total
 from cysyk1999.measures.quantities import CURVATURE, DISTANCE, HEIGHT
 from cysyk1999.publishing import style
 from fingerpad.measures.features import PHASES, STEADY, TOP, is_simulated
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
 AT_REST = "before contact"
 PHASE_LINES = {
@@ -41,6 +40,10 @@ STATEMENT = "thesis statement ("
 """How the source of a row begins that holds what the thesis says of a figure, and whether it is so
 here.
 """
+OTHER_PADS = "other model (pads"
+"""How the source of a row of other pads begins."""
+NOTE = {"fontsize": 6.5, "color": style.GREY}
+"""Of a remark in a panel."""
 SURFACE = "surface"
 """Panel of the rows that hold the shape of a stroked surface."""
 
@@ -55,112 +58,97 @@ def look(name: str) -> dict[str, object]:
     else none.
     """
     speed = name.removesuffix(" mm/s")
-    if speed != name and speed in style.SPEED_COLOURS:
+    if name != speed in style.MEANINGS["speed (mm/s)"]:
         return style.look_of("speed (mm/s)", speed)
     return style.look_of("curvature (1/m)", name) if name in style.COLOURS else {}
 
 
-OTHER_PADS = "other model (pads"
-"""How the source of a row of other pads begins."""
-
-
-def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
+def rows_of(frame: DataFrame, column: str, value: object) -> DataFrame:
     """Rows of one panel or trace, and the range rows that belong to every panel."""
     return frame[(frame[column] == value) | (frame[column].isna() & ~is_simulated(frame))]
 
 
-# --- notes -----------------------------------------------------------------------------------------------
+# --- notes ----------------------------------------------------------------------------------------
 
 
 def footnote(
-    frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()
+    frame: DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()
 ) -> list[str]:
     """What a picture shows: simulated or predicted, with which errors, from which strain energy.
 
     `how` errors are taken, or of which `lines` through points they are (:func:`error_text`), is
     said as well.
     """
-    own = frame[is_simulated(frame)]
-    shown = [column for column in own if own[column].notna().any()]
-    predicted = any(
-        "(impulses/s)" in c or c.startswith(("burst_", "impulse_time", "trial")) for c in shown
-    )
-    error = error_text(frame, lines)
-    energy = predicted or any(c.startswith("strain_energy") for c in shown)
-    of = " from strain energy" if predicted else ""
-    meant = (
-        (" on instantaneous moduli" if predicted else "; strain energy on instantaneous moduli")
-        if energy
-        else ""
-    )
-    first = (
-        f"Predicted by Eq 5-1{of}{meant}, not measured"
-        if predicted
-        else f"Simulated, not measured{meant}"
-    )
+    shown = frame[is_simulated(frame)].dropna(axis=1, how="all").columns
+    predicted = shown.str.contains(r"\(impulses/s\)|^burst_|^impulse_time|^trial").any()
+    what = "Predicted by Eq 5-1, not measured" if predicted else "Simulated, not measured"
+    meant, error = "", error_text(frame, lines)
     if width < style.NOTE_WIDTH / 2:  # of a column
-        first = "Predicted by Eq 5-1, not measured" if predicted else "Simulated, not measured"
         error = error.replace("Largest error", "Error")
-    line = ". ".join(filter(None, (first, error)))
+    elif predicted:
+        what = what.replace(",", "{},")
+        meant = " from strain energy on instantaneous moduli"
+    elif shown.str.startswith("strain_energy").any():
+        what, meant = what + "{}", "; strain energy on instantaneous moduli"
+    rest = f". {error}" if error else ""
+    line = what.format(meant) + rest
     if error and how and len(line) + len(how) + 4 <= width:
-        line += f" ({how})"
+        rest += f" ({how})"
     if frame["source"].str.startswith(OTHER_PADS).any():
+        if len(what.format(meant) + rest) + 19 > width:
+            meant = ""
         words = ". Faint bars: other pads that the thesis's figures do not tell from this one"
-        line = line if len(line) + 19 <= width else line.replace(f"{of}{meant}", "")
-        line += words if len(line) + len(words) < width else ". Bars: other pads"
-    return style.wrapped([line + "."], width)
+        line = what.format(meant) + rest
+        rest += words if len(line) + len(words) < width else ". Bars: other pads"
+    return style.wrapped([what.format(meant) + rest + "."], width)
 
 
 Lines = Sequence[tuple[str, str]]
 """Lines that points are joined to: the columns that name them and that hold what they show."""
 
 
-def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
+def of_lines(frame: DataFrame, lines: Lines) -> DataFrame:
     """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by,
     over that of their values.
 
     NaN in a part that is not known of one of its points; points of which none is known do not
     count.
     """
-    found = []
+    errors = []
     for named, shown in lines:
-        for _, rows in (
-            frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all").groupby(named)
-        ):
-            size = rows[shown].to_numpy(float)
-            off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size[:, None], axis=0)
-            found.append(off / (np.linalg.norm(size) or np.inf))
-    return pd.DataFrame(found, columns=list(PARTS))
+        known = frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all")
+        for _, rows in known.groupby(named):
+            size = rows[[shown]].to_numpy(float)
+            off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size, axis=0)
+            errors.append(off / (np.linalg.norm(size) or np.inf))
+    return DataFrame(errors, columns=list(PARTS))
 
 
-def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
+def error_text(frame: DataFrame, lines: Lines = ()) -> str:
     """``Largest error: mesh 1.2 %, steps 0.3 %, sampling 0.1 %`` of the curve or point that is
     furthest off, with its surface where that stands out, and ``not known`` where only that of the
     mesh is not; nothing where none is known. Where points are joined to `lines` it is that of a
     line.
     """
-    if lines:
-        return error_text(of_lines(frame, lines)).replace(
-            "Largest error", "Largest error of a line"
-        )
-    sums = total(frame)
+    errors = of_lines(frame, lines) if lines else frame
+    sums = total(errors)
     if not sums.notna().any():
         return ""
-
-    def shown(value: float) -> str:
-        return f"{value:.1f} %" if value >= 0.05 or value == 0 else "<0.1 %"
-
-    mesh, steps, sampling = frame.loc[sums.idxmax(), list(PARTS)]
-    words = zip(("mesh", "steps", "sampling"), (mesh, steps, sampling), strict=True)
-    said = ", ".join(f"{word} {shown(value)}" for word, value in words if value == value)
-    if mesh != mesh and steps == steps:  # a mesh of the user's own
-        said = f"mesh not known, {said}"
-    of = ""
-    if "surface" in frame:
-        worst = sums.groupby(frame["surface"]).max().sort_values(ascending=False)
-        if len(worst) > 1 and worst.iloc[0] > max(2 * worst.iloc[1], SHOWN_ABOVE):
-            of = f" of {surface_name(worst.index[0])}"
-    return f"Largest error{of}: {said}"
+    worst = errors.loc[sums.idxmax(), list(PARTS)]
+    named = dict(zip(("mesh", "steps", "sampling"), worst, strict=True))
+    parts = [
+        f"{part} {value:.1f} %" if value >= 0.05 or value == 0 else f"{part} <0.1 %"
+        for part, value in named.items()
+        if value == value
+    ]
+    if np.isnan(named["mesh"]) and not np.isnan(named["steps"]):  # a mesh of the user's own
+        parts.insert(0, "mesh not known")
+    of = " of a line" if lines else ""
+    if "surface" in frame and not lines:
+        far = sums.groupby(frame["surface"]).max().sort_values(ascending=False)
+        if len(far) > 1 and far.iloc[0] > max(2 * far.iloc[1], SHOWN_ABOVE):
+            of = f" of {surface_name(far.index[0])}"
+    return f"Largest error{of}: {', '.join(parts)}"
 
 
 def statement_row(
@@ -169,12 +157,11 @@ def statement_row(
     """A row that holds what the thesis says of a figure, and how it is here: for a figure's
     frame.
     """
-    return {
-        "source": f"{STATEMENT}{ids}): " + " | ".join((words, condition, verdict, number, detail))
-    }
+    said = " | ".join((words, condition, verdict, number, detail))
+    return {"source": f"{STATEMENT}{ids}): {said}"}
 
 
-def statement(frame: pd.DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
+def statement(frame: DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
     """``Thesis: ... Here: holds / fails (number).``, as long as a line allows; nothing without such
     a row.
     """
@@ -199,16 +186,16 @@ def _typeset(text: str) -> str:
     return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<![\w.])-(?=\d)", "−", text)).replace("R2 ", "R² ")
 
 
-# --- curves ----------------------------------------------------------------------------------------------
+# --- curves ---------------------------------------------------------------------------------------
 
 
 def curve(
     ax: Axes,
-    rows: pd.DataFrame,
+    rows: DataFrame,
     x: str,
     y: str,
     points: bool = False,
-    whole: pd.DataFrame | None = None,
+    whole: DataFrame | None = None,
     **look: object,
 ) -> Line2D:
     """A simulated curve, or points, of a frame's rows, with their error where it is above 2 %: as a
@@ -219,65 +206,50 @@ def curve(
     if points:
         bars(ax, rows, x, y, rows[y].abs(), line.get_color())
         return line
-    known, all_of = total(rows), (rows if whole is None else whole).dropna(subset=[x, y])
-    if known.max() > SHOWN_ABOVE and len(all_of):
-        half = known.max() / 100 * norm(*(all_of[q].to_numpy(float) for q in (x, y)))
-        faint = {
-            "color": line.get_color(),
-            "alpha": 0.18,
-            "lw": 0,
-            "zorder": line.get_zorder() - 0.5,
-        }
-        ax.fill_between(rows[x], rows[y] - half, rows[y] + half, **faint)
+    error = total(rows).max()
+    of = (rows if whole is None else whole).dropna(subset=[x, y])
+    if error > SHOWN_ABOVE and len(of):
+        half = error / 100 * norm(of[x].to_numpy(float), of[y].to_numpy(float))
+        faint = {"alpha": 0.18, "lw": 0, "zorder": line.get_zorder() - 0.5}
+        ax.fill_between(rows[x], rows[y] - half, rows[y] + half, color=line.get_color(), **faint)
     return line
 
 
 def bars(
-    ax: Axes,
-    rows: pd.DataFrame,
-    x: str,
-    y: str,
-    sizes: pd.Series | float,
-    colour: object = style.INK,
+    ax: Axes, rows: DataFrame, x: str, y: str, sizes: Series | float, colour: object = style.INK
 ) -> None:
     """Bars of the errors of points where they are above 2 % of `sizes`, in their unit."""
-    known = total(rows)
-    far = known > SHOWN_ABOVE
+    half = total(rows) / 100 * sizes
+    far = total(rows) > SHOWN_ABOVE
     if far.any():
-        half = (known / 100 * sizes)[far]
-        ax.errorbar(
-            rows[x][far], rows[y][far], half, fmt="none", ecolor=colour, elinewidth=0.7, zorder=1
-        )
+        look = {"fmt": "none", "ecolor": colour, "elinewidth": 0.7, "zorder": 1}
+        ax.errorbar(rows[x][far], rows[y][far], half[far], **look)
 
 
-# --- limits ----------------------------------------------------------------------------------------------
-
-
-def limit_axis(
+def draw_bands(
     ax: Axes,
-    frame: pd.DataFrame,
-    column: str,
-    axis: str = "y",
-    text: bool = True,
-    marked: bool = True,
+    rows: DataFrame,
+    x: str | None,
+    y: str | None,
+    place: Callable[[Series], float],
+    width: float = 4.0,
 ) -> None:
-    """Set one axis to the thesis's range found in `frame` and extend it only if simulated data
-    leave it.
+    """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from
+    the lowest to the highest.
 
-    Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of
-    several alike panels needs it). Without a range in the frame the axis is left to the data. An
-    uncertain reading has a broken bracket. Not `marked`: the limits alone.
+    One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row
+    of a bar)`` is where it lies.
     """
-    found = _set_limits(ax, frame, column, axis)
-    if marked:
-        _mark(ax, **{axis: found}, text=text)
+    ends = rows[rows["source"].astype(str).str.startswith(OTHER_PADS)]
+    draw = ax.hlines if x else ax.vlines
+    for k in range(0, len(ends), 2):
+        first, second = ends.iloc[k], ends.iloc[k + 1]
+        colour = look(first["surface"])["color"]
+        shape = {"lw": width, "alpha": 0.35, "capstyle": "butt", "zorder": 1.5}
+        draw(place(first), first[x or y], second[x or y], color=colour, **shape)
 
 
-def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str, text: bool = True) -> None:
-    """Set both axes as `limit_axis` does; where both are extended, what the thesis shows is one
-    rectangle.
-    """
-    _mark(ax, _set_limits(ax, frame, x, "x"), _set_limits(ax, frame, y, "y"), text)
+# --- limits ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -292,205 +264,153 @@ class Range:
     uncertain: bool
 
 
-def draw_bands(
+def limit_axes(
     ax: Axes,
-    rows: pd.DataFrame,
-    x: str | None,
-    y: str | None,
-    place: Callable[[pd.Series], float],
-    width: float = 4.0,
+    frame: DataFrame,
+    x: str | None = None,
+    y: str | None = None,
+    text: bool = True,
+    marked: bool = True,
 ) -> None:
-    """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from
-    the lowest to the highest.
+    """Set the axes of some columns to the thesis's ranges, and extend them only if the data leave
+    these.
 
-    One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row
-    of a bar)`` is where it lies.
+    Where an axis is extended, the thesis's range is shaded and, with `text`, labelled (one of
+    several alike panels needs it). Without a range in the frame the axis is left to the data. An
+    uncertain reading has a broken bracket. Not `marked`: the limits alone.
     """
-    found = rows[rows["source"].astype(str).str.startswith(OTHER_PADS)]
-    for k in range(0, len(found), 2):
-        low, high = found.iloc[k : k + 2][x or y]
-        at = place(found.iloc[k])
-        draw = ax.hlines if x else ax.vlines
-        draw(
-            at,
-            low,
-            high,
-            lw=width,
-            color=look(found.iloc[k]["surface"])["color"],
-            alpha=0.35,
-            capstyle="butt",
-            zorder=1.5,
-        )
+    across = x and _set_limits(ax, frame, x, "x")
+    up = y and _set_limits(ax, frame, y, "y")
+    if not marked:
+        return
+    if across and up and across.left and up.left:
+        thesis_box(ax, across, up)
+    elif across and across.left:
+        ax.axvspan(across.low, across.high, **_band(across.uncertain))
+    elif up and up.left:
+        ax.axhspan(up.low, up.high, **_band(up.uncertain))
+    if up:
+        _bracket(ax, up, text)
 
 
-def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
-    """The frame with the simulated values of all columns in the first: an axis then holds them
-    all.
-    """
-    first, *others = columns
-    own = frame[is_simulated(frame)]
-    return (
-        pd.concat(
-            [frame, *(own.assign(**{first: own[other]}) for other in others)], ignore_index=True
-        )
-        if others
-        else frame
-    )
+def _ranges(frame: DataFrame, column: str) -> tuple[Series, bool]:
+    """Ends of the thesis's ranges of a column, and whether the reading of one is uncertain."""
+    rows = frame[frame["source"].str.contains("axis range") & frame[column].notna()]
+    return rows[column], bool(rows["source"].str.contains("uncertain").any())
 
 
-def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range | None:
+def _set_limits(ax: Axes, frame: DataFrame, column: str, axis: str) -> Range | None:
     """Set the limits of one axis; the thesis's range if the data leave it or its reading is
     uncertain.
     """
-    ranges = (
-        ~is_simulated(frame) & frame["source"].str.contains("axis range") & frame[column].notna()
-    )
-    values = frame.loc[ranges, column]
-    doubt = bool(frame.loc[ranges, "source"].str.contains("uncertain").any())
-    data = frame.loc[
-        is_simulated(frame) | frame["source"].str.startswith("measured"), column
-    ].dropna()
+    ends, doubt = _ranges(frame, column)
+    shown = is_simulated(frame) | frame["source"].str.startswith("measured")
+    data = frame.loc[shown, column].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
-    if values.empty:
-        if axis == "y" and not data.empty:
+    if ends.empty:
+        if axis == "y" and len(data):
             set_limits(min(0.0, data.min()), data.max() * 1.06)
         return None
-    low, high = values.min(), values.max()
-    if (
-        axis == "x" and not data.empty and low < 0 and data.abs().max() > high
-    ):  # a profile wider than the axis
-        set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
+    low, high = ends.min(), ends.max()
+    widest = data.abs().max()
+    if axis == "x" and low < 0 and widest > high:  # a profile wider than the axis
+        set_limits(-widest * 1.04, widest * 1.04)
         return Range(low, high, True, doubt)
-    slack = 1e-3 * (high - low)
-    free = axis == "y" and not data.empty
-    below, above = (
-        free and low < 0 and data.min() < low - slack,
-        free and data.max() > high + slack,
-    )  # an axis from 0 starts there
+    slack, free = 1e-3 * (high - low), axis == "y" and len(data)
+    below = free and low < 0 and data.min() < low - slack  # an axis from 0 starts there
+    above = free and data.max() > high + slack
     set_limits(
         data.min() - 0.06 * (high - data.min()) if below else low,
         data.max() + 0.06 * (data.max() - low) if above else high,
     )
-    return (
-        Range(low, high, below or above, doubt)
-        if below or above or (doubt and axis == "y")
-        else None
+    left = bool(below or above)
+    return Range(low, high, left, doubt) if left or (doubt and axis == "y") else None
+
+
+def _bracket(ax: Axes, up: Range, text: bool) -> None:
+    """A bracket beside a vertical axis as long as the thesis's range; `text`: with its name."""
+    places = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
+    line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": style.GREY, "lw": 0.7}
+    line |= {"shrinkA": 0, "shrinkB": 0, "ls": (0, (2, 2)) if up.uncertain else "-"}
+    ax.annotate("", (1.02, up.low), (1.02, up.high), arrowprops=line, **places)
+    words = "thesis axis,\nuncertain" if up.uncertain else "thesis axis\nrange"
+    ax.annotate(
+        words if text else "?" * up.uncertain,
+        (1.03, (up.low + up.high) / 2),
+        xycoords=("axes fraction", "data"),
+        **NOTE | {"fontsize": 6, "va": "center", "multialignment": "center"},
+        **{"rotation": 90 if text else 0, "linespacing": 1.0},
     )
-
-
-def _mark(ax: Axes, x: Range | None = None, y: Range | None = None, text: bool = True) -> None:
-    """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical
-    one.
-    """
-    if x and y and x.left and y.left:
-        thesis_box(ax, (x.low, x.high), (y.low, y.high), x.uncertain or y.uncertain)
-    elif x and x.left:
-        ax.axvspan(x.low, x.high, **_band(x.uncertain))
-    elif y and y.left:
-        ax.axhspan(y.low, y.high, **_band(y.uncertain))
-    if y:
-        bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
-        line = {
-            "arrowstyle": "|-|,widthA=.2,widthB=.2",
-            "color": style.GREY,
-            "lw": 0.7,
-            "shrinkA": 0,
-            "shrinkB": 0,
-        }
-        line["ls"] = (0, (2, 2)) if y.uncertain else "-"
-        ax.annotate("", (1.02, y.low), (1.02, y.high), arrowprops=line, **bracket)
-        words = "thesis axis,\nuncertain" if y.uncertain else "thesis axis\nrange"
-        says = {
-            "rotation": 90 if text else 0,
-            "ha": "left",
-            "va": "center",
-            "multialignment": "center",
-            "linespacing": 1.0,
-        }
-        ax.annotate(
-            words if text else "?" * y.uncertain,
-            (1.03, (y.low + y.high) / 2),
-            xycoords=("axes fraction", "data"),
-            fontsize=6,
-            color=style.GREY,
-            **says,
-        )
 
 
 def _band(uncertain: bool) -> dict[str, object]:
     """How the thesis's range is shaded: an uncertain one is hatched."""
-    plain = {"lw": 0, "zorder": 0}
-    return plain | (
-        {"fc": "white", "ec": "0.9", "hatch": "///"} if uncertain else {"color": style.BAND}
-    )
+    hatched = {"fc": "white", "ec": "0.9", "hatch": "///"}
+    return {"lw": 0, "zorder": 0} | (hatched if uncertain else {"color": style.BAND})
 
 
-def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncertain: bool) -> None:
+def thesis_box(ax: Axes, x: Range, y: Range) -> None:
     """What the thesis's axes show as a rectangle; hatched, with a question mark, if a reading of
     them is uncertain.
     """
-    from matplotlib.patches import Rectangle
-
-    ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **_band(uncertain)))
+    uncertain = x.uncertain or y.uncertain
+    size = x.high - x.low, y.high - y.low
+    ax.add_patch(Rectangle((x.low, y.low), *size, **_band(uncertain)))
     if uncertain:
-        ax.annotate(
-            "?",
-            (x[1], y[1]),
-            (-2, -2),
-            textcoords="offset points",
-            ha="right",
-            va="top",
-            fontsize=6.5,
-            color=style.GREY,
-        )
+        away = {"xytext": (-2, -2), "textcoords": "offset points", "ha": "right", "va": "top"}
+        ax.annotate("?", (x.high, y.high), **NOTE | away)
 
 
-def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
+def wide_limits(ax: Axes, rows: DataFrame, x: str, y: str) -> None:
     """Axes of the thesis's ranges, and of the data where they leave them at either end; what the
     thesis shows is then shaded.
     """
-    box, doubt = [], False
+    box = []
     for column, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
-        marks = rows["source"].str.contains("axis range") & rows[column].notna()
-        ranges = rows.loc[~is_simulated(rows) & marks, column]
-        doubt |= bool(rows.loc[marks, "source"].str.contains("uncertain").any())
+        ends, doubt = _ranges(rows, column)
         data = rows.loc[~rows["source"].str.contains("axis range"), column].dropna()
-        low, high = (
-            (ranges.min(), ranges.max()) if len(ranges) else (min(0.0, data.min()), data.max())
-        )
+        low, high = (ends.min(), ends.max()) if len(ends) else (min(0.0, data.min()), data.max())
         wide = min(low, data.min()), max(high, data.max(), low + 1e-9)
         margin = 0.05 * (wide[1] - wide[0])
         on_the_axis = data.min() <= low + 0.2 * margin  # so that it does not cut the points
         set_limits(
             wide[0] - (margin if wide[0] < low else 0.4 * margin * on_the_axis),
-            high if wide[1] == high and len(ranges) else wide[1] + margin,
+            high if wide[1] == high and len(ends) else wide[1] + margin,
         )
-        box.append((low, high, wide != (low, high) and len(ranges) > 0))
-    if (doubt or any(beyond for *_, beyond in box)) and all(
-        len(rows[column].dropna()) for column in (x, y)
-    ):
-        (left, right, _), (bottom, top, _) = box
-        thesis_box(ax, (left, right), (bottom, top), doubt)
+        box.append(Range(low, high, wide != (low, high) and len(ends) > 0, doubt))
+    beyond = any(each.left or each.uncertain for each in box)
+    if beyond and rows[x].notna().any() and rows[y].notna().any():
+        thesis_box(ax, *box)
 
 
-def leave_room_for_brackets(fig: Figure) -> None:
+def leave_room_for_brackets(panels: Mapping[object, Axes], frame: DataFrame) -> None:
     """Narrow the panels by what the brackets beside extended axes take, which the layout does not
     see.
     """
-    engine = fig.get_layout_engine()
+    engine = next(iter(panels.values())).figure.get_layout_engine()
     x, y, width, height = engine.get()["rect"]
     engine.set(rect=(x, y, width - 0.02, height))
 
 
-# --- the surface above -----------------------------------------------------------------------------------
+def together(frame: DataFrame, columns: Sequence[str]) -> DataFrame:
+    """The frame with the simulated values of all columns in the first: an axis then holds them
+    all.
+    """
+    first, *others = columns
+    own = frame[is_simulated(frame)]
+    copies = [own.assign(**{first: own[other]}) for other in others]
+    return pd.concat([frame, *copies], ignore_index=True) if copies else frame
 
 
-def shape_of(frame: pd.DataFrame) -> pd.DataFrame:
+# --- the surface above ----------------------------------------------------------------------------
+
+
+def shape_of(frame: DataFrame) -> DataFrame:
     """The rows that hold the shape of the stroked surface."""
     return frame[frame["source"].str.endswith("shape of the stimulus")]
 
 
-def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
+def draw_surface(ax: Axes, frame: DataFrame) -> None:
     """The surface, solid above, with the curvature of each convexity."""
     rows = shape_of(frame)
     x, y = rows[DISTANCE].to_numpy(), rows[HEIGHT].to_numpy()
@@ -498,34 +418,25 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     ax.fill_between(x, y, top, color=style.PALE, lw=0)
     ax.plot(x, y, color=style.INK, lw=0.9)
     ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0])
-    ax.tick_params(labelbottom=False)
     ax.set_ylabel("height\n(mm)")
-    runs = [
-        run
-        for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum())
-        if run[CURVATURE].iloc[0] > 0 and len(run) > 2
+    ax.tick_params(labelbottom=False)
+    pieces = [
+        (piece[DISTANCE].iloc[0], piece[DISTANCE].iloc[-1], piece[CURVATURE].iloc[0])
+        for _, piece in rows.groupby((rows[CURVATURE].diff() != 0).cumsum())
+        if piece[CURVATURE].iloc[0] > 0 and len(piece) > 2
     ]
     room = 0.034 * (x[-1] - x[0])
-    if (
-        x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room
-    ):  # cut off by the picture's end
-        runs.pop()
-    places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
-    units = [" 1/m", *[""] * (len(runs) - 1)]
-    for run, unit, place in zip(
-        runs, units, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True
-    ):
-        ax.text(
-            place,
-            top - 0.06,
-            f"{run[CURVATURE].iloc[0]:.0f}{unit}",
-            ha="center",
-            va="top",
-            fontsize=6,
-        )
+    start, end, _ = pieces[-1]
+    if end == x[-1] and end - start < room:  # cut off by the picture's end
+        pieces.pop()
+    middles = [(start + end) / 2 for start, end, _ in pieces]
+    places = style.spread(middles, room, x[0] + room / 2, x[-1] - room / 2)
+    for k, (place, (*_, curvature)) in enumerate(zip(places, pieces, strict=True)):
+        text = f"{curvature:.0f}{'' if k else ' 1/m'}"
+        ax.text(place, top - 0.06, text, ha="center", va="top", fontsize=6)
 
 
-def below_surface(fig: Figure, frame: pd.DataFrame, count: int, along: bool = True) -> list[Axes]:
+def below_surface(fig: Figure, frame: DataFrame, count: int, along: bool = True) -> list[Axes]:
     """The surface above and so many panels below it, which are returned; `along`: they share its
     distances.
     """

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 
-import pandas as pd
+from pandas import DataFrame
 
 from cysyk1999.publishing.write import markdown
 from cysyk1999.reference_data import Column, read_table
@@ -28,83 +28,62 @@ do recordings predicted.
 """
 
 
-def read_catalogue(path: str | PathLike) -> pd.DataFrame:
+def read_catalogue(path: str | PathLike) -> DataFrame:
     """The thesis's figures in its order, columns of :data:`CATALOGUE`.
 
-    Raises:
-        ReferenceDataError: a cell is wrong. ValueError: a number is given twice, or nothing stands
-        in for a figure that cannot be drawn.
+    Raises
+    ------
+    ReferenceDataError
+        A cell is wrong.
+    ValueError
+        A number is given twice, or nothing stands in for a figure that cannot be drawn.
     """
     table = read_table(path, CATALOGUE)
-    if table["number"].duplicated().any():
-        raise ValueError(
-            f"{path}: figure {table['number'][table['number'].duplicated()].iloc[0]} is given twice"
-        )
+    for number in table["number"][table["number"].duplicated()]:
+        raise ValueError(f"{path}: figure {number} is given twice")
     bare = table[~table["kind"].isin(DRAWABLE) & (table["stand_in"] == "")]
-    if len(bare):
+    for row in bare.itertuples():
         raise ValueError(
-            f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing "
-            "stands in for it"
+            f"{path}: figure {row.number} is a {row.kind} and nothing stands in for it"
         )
     return table
 
 
 def readme(
-    catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]
+    catalogue: DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]
 ) -> str:
     """Text of ``figures/README.md``.
 
     made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's
     statements on it hold here, and of how many that can be answered; the others are not in it.
     """
-    here = catalogue[catalogue["number"].isin(list(made))]
+    drawn = catalogue["number"].isin(list(made))
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
-    never, missing = (
-        catalogue[~catalogue["number"].isin(list(made)) & which] for which in (~drawable, drawable)
-    )
+    head = "kind in the thesis", "in place of what is not public"
+    here = [
+        (f"[{n}](thesis/fig_{n}.png)", made[n], _holds(n, judged), kind, stand_in)
+        for n, kind, stand_in in catalogue.loc[drawn, ["number", "kind", "stand_in"]].to_numpy()
+    ]
+    columns = {"number": "figure", "thesis_shows": "thesis shows", "kind": "kind"}
+    missing = catalogue[~drawn].rename(columns=columns | {"stand_in": "stands in"})
+    never, later = missing[~drawable[~drawn]], missing[drawable[~drawn]]
     parts = [
         "# Figures",
         "Written by the workflow from `config/reference/figures.csv`, the titles of the figures "
-        "drawn and the table that compares"
-        " them with the thesis; do not edit.",
+        "drawn and the table that compares them with the thesis; do not edit.",
         f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from "
-        "simulations, on the thesis's"
-        " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's "
-        "recordings and photographs is"
-        " public: no recording is drawn, and a figure that stands in for one says *predicted* in "
-        "the picture. *Holds*: how"
-        " many of the thesis's numbers, axes and trends that belong to a figure are met here, of "
-        "those that can be answered.",
+        "simulations, on the thesis's axes, each with the plotted data beside it "
+        "(`thesis/fig_*.csv`). None of the thesis's recordings and photographs is public: no "
+        "recording is drawn, and a figure that stands in for one says *predicted* in the picture. "
+        "*Holds*: how many of the thesis's numbers, axes and trends that belong to a figure are "
+        "met here, of those that can be answered.",
         "## Drawn here",
-        _table(
-            ("figure", "shows", "holds", "kind in the thesis", "in place of what is not public"),
-            [
-                (
-                    f"[{number}](thesis/fig_{number}.png)",
-                    made[number],
-                    _holds(number, judged),
-                    kind,
-                    stand_in,
-                )
-                for number, kind, stand_in in here[["number", "kind", "stand_in"]].itertuples(
-                    index=False
-                )
-            ],
-        ),
+        markdown(DataFrame(here, columns=["figure", "shows", "holds", *head])).rstrip(),
         "## Not drawn, and what stands in",
-        _table(
-            ("figure", "thesis shows", "kind", "stands in"),
-            [(row.number, row.thesis_shows, row.kind, row.stand_in) for row in never.itertuples()],
-        ),
+        markdown(never[[*columns.values(), "stands in"]]).rstrip(),
     ]
-    if len(missing):
-        parts += [
-            "## Not drawn yet",
-            _table(
-                ("figure", "thesis shows", "kind"),
-                [(row.number, row.thesis_shows, row.kind) for row in missing.itertuples()],
-            ),
-        ]
+    if len(later):
+        parts += ["## Not drawn yet", markdown(later[list(columns.values())]).rstrip()]
     parts += [
         "## Beyond the thesis",
         "`tables/`: numbers, as CSV and Markdown. `studies/`: calibration, moving pictures and "
@@ -119,8 +98,5 @@ def _holds(number: str, judged: Mapping[str, tuple[int, int]]) -> str:
     """
     if number not in judged:
         return ""
-    return "[{} of {}](tables/thesis_comparison_chapter{}.md)".format(*judged[number], number[0])
-
-
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
-    return markdown(pd.DataFrame(rows, columns=list(head))).rstrip("\n")
+    good, count = judged[number]
+    return f"[{good} of {count}](tables/thesis_comparison_chapter{number[0]}.md)"

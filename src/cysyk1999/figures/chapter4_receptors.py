@@ -11,18 +11,17 @@ another model's in panels of their own. A user's recordings under the same proto
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
+from pandas import DataFrame
+from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
-from cysyk1999.figures.chapter4 import HOLD, K210, OTHER_PADS, WIDTH_IDS, by_surface
-from cysyk1999.figures.grammar import Data, Figure, Own, Panels, below, nine
+from cysyk1999.figures.chapter4 import HOLD, K210, WIDTH_IDS, by_surface
+from cysyk1999.figures.grammar import Data, Figure, Page, Panels, nine, stacked
 from cysyk1999.measures.errors import PARTS, Curve, curve_errors, over_time, shared_place
 from cysyk1999.measures.quantities import (
     CURVATURE,
@@ -66,7 +65,7 @@ from cysyk1999.measures.responses import (
     shallow_law,
     straight_line,
 )
-from cysyk1999.measures.runs import FAST, LOWER, NINE
+from cysyk1999.measures.runs import FAST, LOWER, NINE, Runs
 from cysyk1999.measures.table import reading
 from cysyk1999.publishing import style
 from cysyk1999.receptors.fits import gain_and_threshold, r_squared
@@ -80,12 +79,7 @@ from fingerpad.measures.features import (
     ramp_end,
 )
 from fingerpad.planning.errors import PROFILE_ORDER
-from fingerpad.receptors.laws import THESIS_RATE, rectified
-from fingerpad.receptors.spikes import VARIATION
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Picture
+from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, rectified
 
 AVERAGED = 100
 """Trials that the frequency of Fig 4-3 is the mean of."""
@@ -99,54 +93,33 @@ PRINTED = ("T083", "T084", "T085", "T086", "T087")
 RATES = "impulse_rates"
 SPREAD = "standard deviation (impulses/s)"
 """Column of what is recorded: over repetitions, where it is given."""
-LAW_NOTE = (
-    "Eq 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 "
-    "impulses/Pa, 100 Pa/s)"
-)
-DEEP = f"{LAW_NOTE}, 915 µm under the centre."
-STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
 GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: cylinders"
 HALF_SPACE = "half-space; ours: layered pad"
-SCALED = (
-    "The thesis prints no constants for this depth: energies are scaled to their mean at 915 "
-    "µm over the nine surfaces."
-)
-BESIDE = (
-    "Left: mean over the hold; the recorded rates are not public. Goodwin, Browning and Wheat "
-    "(1995), digitised by a third "
-    "party: impulses in the first second (force rate not stated). TouchSim (Saal et al. 2017): a "
-    "half-space."
-)
-PEAK_WORDS = "peak rate (impulses/s)"
+PEAK_RATE = GIVEN_RATE.reading(None, "peak rate (impulses/s)")
+LOWER_RIGHT = {"loc": "lower right", "handlelength": 1.4}
 OF_THE_LARGEST = "of the largest"
 OF = "panel"
 """Column that says which measure of other pads a bar shows."""
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
-RATE_OVER_TIME = Curve(lambda history: predicted_rate(history)[[TIME, IMPULSE_RATE]].to_numpy().T)
-
-# --- rows ------------------------------------------------------------------------------------------------
+# --- rows -----------------------------------------------------------------------------------------
 
 
-def line_through(rows: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
+def line_through(rows: DataFrame, x: str, y: str) -> DataFrame:
     """Two rows: the ends of the line through points, from 0 to the last of them, where it is not
     negative.
     """
     slope, offset, share = straight_line(rows[x], rows[y])
-    ends = np.array([max(0.0, -offset / slope) if slope > 0 else 0.0, rows[x].max()])
-    return pd.DataFrame(
-        {
-            "source": f"{SIMULATED}: least-squares line, R2 {share:.3f}",
-            x: ends,
-            y: slope * ends + offset,
-        }
-    )
+    start = max(0.0, -offset / slope) if slope > 0 else 0.0
+    ends = np.array([start, rows[x].max()])
+    source = f"{SIMULATED}: least-squares line, R2 {share:.3f}"
+    return DataFrame({"source": source, x: ends, y: slope * ends + offset})
 
 
-def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.DataFrame:
+def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> DataFrame:
     """Rates recorded under the protocol of a figure: those printed in the thesis, and a user's."""
     if (rates := data.measured) is None:
-        return pd.DataFrame()
+        return DataFrame()
     same = rates[
         (rates["receptor"] == "SA-I")
         & (rates["species"] != "model")
@@ -155,433 +128,362 @@ def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.
         & (rates["ramp_gf_per_s"] == ramp)
         & (rates["window"] == window)
     ]
-    printed = {
-        float(data.reference.loc[id_, "low"]): id_ for id_ in PRINTED if id_ in data.reference.index
-    }
+    printed = {data.reference.loc[k, "low"]: k for k in PRINTED if k in data.reference.index}
     of_thesis = same["source"].str.startswith("Cysyk 1999")
-    same = same[~of_thesis | same["rate_per_s"].isin(printed)].reset_index(drop=True)
-    sources = [
-        f"stated in the thesis ({printed[row['rate_per_s']]}, reading uncertain)"
-        if row["source"].startswith("Cysyk 1999")
-        else f"measured ({row['recording']}; {row['source']})"
-        for row in same.to_dict("records")
-    ]
-    shown = {
-        CURVATURE: same["curvature_per_m"],
-        DOUBT: same["or_curvature_per_m"],
-        column: same["rate_per_s"],
-    }
-    if same["sd_per_s"].notna().any():
-        shown[SPREAD] = same["sd_per_s"]
-    return pd.DataFrame({"source": sources} | shown)
+    same = same[~of_thesis | same["rate_per_s"].isin(printed)]
+    rows = DataFrame(
+        {
+            "source": [
+                f"stated in the thesis ({printed[row.rate_per_s]}, reading uncertain)"
+                if row.source.startswith("Cysyk 1999")
+                else f"measured ({row.recording}; {row.source})"
+                for row in same.itertuples()
+            ],
+            CURVATURE: same["curvature_per_m"].to_numpy(),
+            DOUBT: same["or_curvature_per_m"].to_numpy(),
+            column: same["rate_per_s"].to_numpy(),
+            SPREAD: same["sd_per_s"].to_numpy(),
+        }
+    )
+    return rows if rows[SPREAD].notna().any() else rows.drop(columns=SPREAD)
 
 
 def published(
     data: Data, panel: str, window: str, model: bool, force: float | None = None
-) -> pd.DataFrame:
+) -> DataFrame:
     """Published rates, or another model's, of pressed surfaces in a window, one series a
     recording.
     """
     if (rates := data.measured) is None:
-        return pd.DataFrame()
-    rows = rates[(rates["species"] == "model") == model]
-    rows = rows[
-        (rows["window"] == window)
-        & (rows["receptor"] == "SA-I")
-        & ~rows["source"].str.startswith("Cysyk")
+        return DataFrame()
+    kinds = rates["stimulus"]
+    shaped = rates.assign(sphere=kinds == "sphere").groupby("recording")["sphere"]
+    rows = rates[
+        ((rates["species"] == "model") == model)
+        & (rates["window"] == window)
+        & (rates["receptor"] == "SA-I")
+        & ~rates["source"].str.startswith("Cysyk")
+        & (model | (kinds.isin(("sphere", "flat plate")) & shaped.transform("any")))
     ]
-    rows = rows[rows["stimulus"].isin(("sphere", "flat plate")) | model]
-    spheres = rows.groupby("recording")["stimulus"].transform(lambda kinds: "sphere" in set(kinds))
-    rows = rows[spheres.astype(bool) | model] if len(rows) else rows
     if force:
         rows = rows[rows["force_gf"] == force]
     source = ("other model (" if model else "measured (") + rows["source"] + ")"
-    shared = {"source": source, "panel": panel, "series": rows["recording"]}
-    return pd.DataFrame(
-        shared | {CURVATURE: rows["curvature_per_m"], GIVEN_RATE: rows["rate_per_s"]}
-    )
+    of = {"source": source, "panel": panel, "series": rows["recording"]}
+    return DataFrame(of | {CURVATURE: rows["curvature_per_m"], GIVEN_RATE: rows["rate_per_s"]})
 
 
-def trains_and_rates(data: Data) -> pd.DataFrame:
+@stacked
+def trains_and_rates(data: Data) -> Iterator[DataFrame | Mapping]:
     """Predicted impulses of four trials a surface at 150 gf/s, the force, the mean predicted rate
     in the hold, printed ones.
     """
-    numbers = data.numbers(FAST, {GIVEN_RATE: HELD})
+    numbers = data.numbers(FAST, {GIVEN_RATE: HELD}).assign(source=SIMULATED)
     plate = data.histories[FAST["flat"]]
-    parts = [
-        numbers.assign(panel="mean rate of the hold"),
-        pd.DataFrame({"panel": "force", TIME: plate["time"].values, FORCE: force_gf(plate)}),
-    ]
+    yield numbers.assign(panel="mean rate of the hold")
+    force = {TIME: plate["time"].values, FORCE: force_gf(plate)}
+    yield {"source": SIMULATED, "panel": "force"} | force
     errors = numbers.set_index("surface")[list(PARTS)]
     for k, (label, history, _) in enumerate(data.runs(FAST)):
         impulses = raster(predicted_rate(history), TRIALS, SEED + k)
-        part = {
-            "panel": "impulses",
-            "surface": label,
-            "series": [f"trial {n}" for n in impulses["trial"]],
-        }
-        parts.append(pd.DataFrame(part | {IMPULSE: impulses[TIME], **errors.loc[label]}))
-    return below(pd.concat(parts, ignore_index=True), given(data, "hold", 150))
+        series = [f"trial {n}" for n in impulses["trial"]]
+        of = {"source": SIMULATED, "panel": "impulses", "surface": label, "series": series}
+        yield of | {IMPULSE: impulses[TIME], **errors.loc[label]}
+    yield given(data, "hold", 150)
 
 
-def frequencies(data: Data) -> pd.DataFrame:
+@stacked
+def frequencies(data: Data) -> Iterator[DataFrame]:
     """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate
     they were made from.
     """
-    parts, at = [], np.arange(0, 2.0001, 0.02)
+    at = np.arange(0, 2.0001, 0.02)
+    curve = Curve(lambda history: predicted_rate(history)[[TIME, IMPULSE_RATE]].to_numpy().T)
     for k, (label, history, coarse) in enumerate(data.runs(NINE)):
-        rate, errors = (
-            predicted_rate(history),
-            curve_errors(history, coarse, RATE_OVER_TIME).columns,
-        )
+        rate = predicted_rate(history)
+        of = {"surface": label} | curve_errors(history, coarse, curve).columns
         frequency = mean_frequency(raster(rate, AVERAGED, SEED + k), AVERAGED, at)
-        parts += [
-            frequency.assign(surface=label, series="frequency of impulses", **errors),
-            rate[[TIME, IMPULSE_RATE]].assign(surface=label, series="rate", **errors),
-        ]
-    return pd.concat(parts, ignore_index=True)
+        yield frequency.assign(series="frequency of impulses", **of)
+        yield rate[[TIME, IMPULSE_RATE]].assign(series="rate", **of)
 
 
-def peak_and_steady(data: Data) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+def peak_and_steady(data: Data) -> tuple[DataFrame, DataFrame, DataFrame]:
     """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded
     ones of either kind.
     """
-    rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY})
+    rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY}).assign(source=SIMULATED)
     return rows, given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
 
 
-def steady_over_peak(data: Data) -> pd.DataFrame:
+@stacked
+def steady_over_peak(data: Data) -> Iterator[DataFrame]:
+    """Steady rates against peak rates."""
     rows, peak, steady = peak_and_steady(data)
-    both = (
-        peak.merge(steady, on=["source", CURVATURE, DOUBT])
-        if len(peak) and len(steady)
-        else pd.DataFrame()
-    )
-    return below(rows, line_through(rows, GIVEN_RATE, STEADY_RATE), both)
+    yield rows
+    yield line_through(rows, GIVEN_RATE, STEADY_RATE)
+    if len(peak) and len(steady):
+        yield peak.merge(steady, on=["source", CURVATURE, DOUBT])
 
 
-def over_curvature(data: Data) -> pd.DataFrame:
+@stacked
+def over_curvature(data: Data) -> Iterator[DataFrame]:
+    """Peak and steady rates against curvature."""
     rows, peak, steady = peak_and_steady(data)
-    return below(
-        rows,
-        *(line_through(rows, CURVATURE, column) for column in (GIVEN_RATE, STEADY_RATE)),
-        peak,
-        steady,
-    )
+    yield rows
+    for column in (GIVEN_RATE, STEADY_RATE):
+        yield line_through(rows, CURVATURE, column)
+    yield peak
+    yield steady
 
 
-def widths_of_other_pads(data: Data) -> pd.DataFrame:
+def widths_of_other_pads(data: Data) -> DataFrame:
     """How far the inverse contact widths of other pads differ as the hold begins and as it ends."""
-    return data.bands(
-        INVERSE_WIDTH, {m: {OF: m} for m in ("width_top", "width_end")}, lambda width: 1 / width
-    )
+    measures = {m: {OF: m} for m in ("width_top", "width_end")}
+    return data.bands(INVERSE_WIDTH, measures, lambda width: 1 / width)
 
 
-def rate_and_width(data: Data) -> pd.DataFrame:
+def rate_and_width(data: Data) -> DataFrame:
     """Predicted rate and inverse contact width in the hold, one row an output and surface."""
 
-    def held_rate(history: xr.Dataset) -> np.ndarray:
-        return THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
-
-    def held_time(history: xr.Dataset) -> np.ndarray:
-        return history["time"].values[ramp_end(history) :]
-
-    parts = []
-    for label, history, coarse in data.runs(NINE):
+    def read(history: Dataset) -> dict[str, np.ndarray]:
         held = history.isel(time=slice(ramp_end(history), None))
-        errors = curve_errors(history, coarse, Curve(lambda d: (held_time(d), held_rate(d))))
-        part = {
-            "surface": label,
-            TIME: held["time"].values,
-            INVERSE_WIDTH: INVERSE_WIDTH.read(held),
-        }
-        parts.append(pd.DataFrame(part | {IMPULSE_RATE: held_rate(history)} | errors.columns))
-    return pd.concat(parts, ignore_index=True)
+        rate = THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
+        times = {TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held)}
+        return times | {IMPULSE_RATE: rate}
+
+    def curve(history: Dataset) -> tuple[np.ndarray, np.ndarray]:
+        return read(history)[TIME], read(history)[IMPULSE_RATE]
+
+    return data.table(NINE, read, Curve(curve))
 
 
-def nodes_by_law(data: Data) -> pd.DataFrame:
+@stacked
+def nodes_by_law(data: Data) -> Iterator[DataFrame]:
     """Pressure of twelve nodes as simulated, and by Eq 4-1 from each node's peak on: one set of
     constants, and a set for each.
     """
     ((_, history, coarse),) = data.runs(K210)
     nodes = contact_nodes(history, NODE_COUNT)
-    together, parts = fit_nodes("4-1", nodes), []
+    together = fit_nodes("4-1", nodes)
     for place in node_places(NODE_COUNT):
         x = place * 1e3
         pressed = over_time(partial(pressure_at, place=shared_place(place, coarse)), PROFILE_ORDER)
-        errors = curve_errors(history, coarse, pressed).columns
-        part = pd.DataFrame({TIME: history["time"].values, P: pressure_at(history, place)})
-        parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}, **errors))
+        of = {NODE: round(x, 5)} | curve_errors(history, coarse, pressed).columns
+        trace = {TIME: history["time"].values, P: pressure_at(history, place)}
+        yield DataFrame(trace).assign(series="simulated", **of)
         own = nodes[np.isclose(nodes[NODE], x)]
         if own["past_peak"].sum() < 4:
             continue
         for series, constants in (("one set", together), ("a set for each", fit_nodes("4-1", own))):
             law = pressure_by_law("4-1", own, constants)[[TIME, P_LAW]]
-            parts.append(law.assign(series=f"Eq 4-1, {series}", **{NODE: round(x, 5)}, **errors))
-    return pd.concat(parts, ignore_index=True)
+            yield law.assign(series=f"Eq 4-1, {series}", **of)
 
 
-def energy_by_pressure(data: Data) -> pd.DataFrame:
+def energy_by_pressure(data: Data) -> DataFrame:
     """Strain energy at 915 um as simulated and by Eq 4-4 from the contact pressure, one set of
     constants for nine surfaces.
     """
-    runs = list(data.runs(NINE))
-    law = fit_sum([history for _, history, _ in runs], RECEPTOR_DEPTH)
-    source = (
-        f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 "
-        f"{law.constant:.3g} 1/m"
-    )
-    shown = partial(energy, depth=RECEPTOR_DEPTH)
-    parts = [
-        energy_from_pressure(history, RECEPTOR_DEPTH, law).assign(
-            surface=label, source=source, **curve_errors(history, coarse, over_time(shown)).columns
-        )
-        for label, history, coarse in runs
-    ]
-    return pd.concat(parts, ignore_index=True)
+    law = fit_sum([data.histories[scene] for scene in NINE.scenes.values()], RECEPTOR_DEPTH)
+    constants = f"A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m"
+    source = f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, {constants}"
+    shown = over_time(partial(energy, depth=RECEPTOR_DEPTH))
+    read = partial(energy_from_pressure, depth=RECEPTOR_DEPTH, law=law)
+    return data.table(NINE, read, shown).assign(source=source)
 
 
-def peaks_over_pressure(data: Data) -> pd.DataFrame:
+@stacked
+def peaks_over_pressure(data: Data) -> Iterator[DataFrame]:
     """Predicted peak rate and largest pressure at any node, one row a surface, and the line through
     them; recorded peak rates.
     """
     rows = data.numbers(NINE, {P_PEAK: reading("highest_pressure", "highest"), GIVEN_RATE: PEAK})
-    mine = given(data, "peak", 40)
-    if len(mine):
-        mine[P_PEAK] = np.interp(mine[CURVATURE], rows[CURVATURE], rows[P_PEAK])
-    return below(rows, line_through(rows, P_PEAK, GIVEN_RATE), mine)
+    yield rows.assign(source=SIMULATED)
+    yield line_through(rows, P_PEAK, GIVEN_RATE)
+    recorded = given(data, "peak", 40)
+    if len(recorded):
+        pressure = np.interp(recorded[CURVATURE], rows[CURVATURE], rows[P_PEAK])
+        yield recorded.assign(**{P_PEAK: pressure})
 
 
-def linear_in_pressure(data: Data) -> pd.DataFrame:
+@stacked
+def linear_in_pressure(data: Data) -> Iterator[DataFrame]:
     """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and
     to Goodwin's first second.
     """
     early = Q("first_second_pressure", "Pa")
-    rows = data.numbers(
-        NINE,
-        {
-            GIVEN_RATE: HELD,
-            MEAN_P: mean_pressure,
-            early: partial(mean_pressure, window="first second"),
-        },
-    )
-    early = rows.pop(early)
-    parts, theirs = (
-        [rows.assign(source=f"{SIMULATED}: Eq 5-1")],
-        published(data, "published", "first second", False, 20),
-    )
+    first = partial(mean_pressure, window="first second")
+    rows = data.numbers(NINE, {GIVEN_RATE: HELD, MEAN_P: mean_pressure, early: first})
+    pressed = rows.pop(early)
+    theirs = published(data, "published", "first second", False, 20)
 
     def fitted(pressure: np.ndarray, rates: np.ndarray) -> tuple:
         law = gain_and_threshold(pressure, rates)
         return law, f"{SIMULATED}: linear in the pressure, R2 {r_squared(rates, law(pressure)):.3f}"
 
+    yield rows.assign(source=f"{SIMULATED}: Eq 5-1")
     law, source = fitted(rows[MEAN_P].to_numpy(), rows[GIVEN_RATE].to_numpy())
-    parts.append(rows.assign(source=source, **{GIVEN_RATE: law(rows[MEAN_P])}))
+    yield rows.assign(source=source, **{GIVEN_RATE: law(rows[MEAN_P])})
     if len(theirs):
-        law, source = fitted(
-            np.interp(theirs[CURVATURE], rows[CURVATURE], early), theirs[GIVEN_RATE].to_numpy()
-        )
-        inside = rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()
-        part = {
-            "source": source,
-            "panel": "published",
-            CURVATURE: rows[CURVATURE],
-            MEAN_P: early,
-            GIVEN_RATE: law(early),
-        }
-        parts.append(
-            pd.DataFrame(part)[inside].assign(surface=rows["surface"], **rows[list(PARTS)])
-        )
-    return below(pd.concat(parts, ignore_index=True), theirs, given(data, "hold", 40))
+        at = np.interp(theirs[CURVATURE], rows[CURVATURE], pressed)
+        law, source = fitted(at, theirs[GIVEN_RATE].to_numpy())
+        part = {"source": source, "panel": "published", MEAN_P: pressed, GIVEN_RATE: law(pressed)}
+        yield rows.assign(**part)[rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()]
+    yield theirs
+    yield given(data, "hold", 40)
 
 
-def held_rates(data: Data) -> pd.DataFrame:
+@stacked
+def held_rates(data: Data) -> Iterator[DataFrame]:
     """Mean predicted rate of the hold at 150 gf/s, and the rates printed in Fig 4-2."""
-    return below(data.numbers(FAST, {GIVEN_RATE: HELD}), given(data, "hold", 150))
+    yield data.numbers(FAST, {GIVEN_RATE: HELD}).assign(source=SIMULATED)
+    yield given(data, "hold", 150)
 
 
-def mean_rates(data: Data, depth: float) -> pd.DataFrame:
+def law_at(data: Data, depth: float) -> tuple[ImpulseRate, float]:
+    """Eq 5-1 at a depth (m), and the factor of its energies."""
+    if depth == RECEPTOR_DEPTH:
+        return THESIS_RATE, 1.0
+    return shallow_law(NINE.histories(data.histories))
+
+
+@stacked
+def mean_rates(data: Data, depth: float) -> Iterator[DataFrame]:
     """Mean predicted rates of the hold at a depth; beside them published rates and TouchSim's, and
     ours in their windows.
     """
-    law, text = THESIS_RATE, "Eq 5-1 at 915 um"
-    if depth != RECEPTOR_DEPTH:
-        law, factor = shallow_law(NINE.histories(data.histories))
-        text = f"Eq 5-1 at {depth * 1e6:.0f} um, energies times {factor:.3f}"
-    number = partial(rate_in, depth=depth, law=law)
-    parts = [data.numbers(NINE, {GIVEN_RATE: partial(number, window="hold")})]
+    law, factor = law_at(data, depth)
+    scaled = "" if factor == 1.0 else f", energies times {factor:.3f}"
+    source = f"{SIMULATED}: Eq 5-1 at {depth * 1e6:.0f} um{scaled}"
+
+    def rates(runs: Runs, window: str) -> DataFrame:
+        number = partial(rate_in, depth=depth, law=law, window=window)
+        return data.numbers(runs, {GIVEN_RATE: number}).assign(source=source)
+
+    yield rates(NINE, "hold")
     for force, runs in {**LOWER, 20: NINE}.items():
-        early = data.numbers(runs, {GIVEN_RATE: partial(number, window="first second")})
-        parts.append(early.assign(panel="published", series=f"predicted, {force} gf"))
-    steady = data.numbers(NINE, {GIVEN_RATE: partial(number, window="steady")})
-    parts.append(steady.assign(panel="TouchSim", series="predicted, cylinders"))
-    rows = pd.concat(parts, ignore_index=True)
-    rows = rows[rows["panel"].isna() | (rows[CURVATURE] < 700)].assign(
-        source=f"{SIMULATED}: {text}"
-    )
-    beside = (
-        published(data, "published", "first second", False),
-        published(data, "TouchSim", "steady", True),
-    )
-    return below(rows, *beside, given(data, "hold", 40))
+        early = rates(runs, "first second")
+        yield within(early.assign(panel="published", series=f"predicted, {force} gf"))
+    steady = rates(NINE, "steady")
+    yield within(steady.assign(panel="TouchSim", series="predicted, cylinders"))
+    yield published(data, "published", "first second", False)
+    yield published(data, "TouchSim", "steady", True)
+    yield given(data, "hold", 40)
 
 
-def peak_rates(data: Data) -> pd.DataFrame:
+def within(rows: DataFrame) -> DataFrame:
+    """Rows of surfaces as curved as those that others pressed."""
+    return rows[rows[CURVATURE] < 700]
+
+
+@stacked
+def peak_rates(data: Data) -> Iterator[DataFrame]:
     """Predicted peak rates at two depths, the line in the peak rate of strain energy closest to
     each; TouchSim's first 200 ms.
     """
-    parts = []
-    for depth in (SHALLOW_DEPTH, RECEPTOR_DEPTH):
-        law, factor = (
-            shallow_law(NINE.histories(data.histories))
-            if depth == SHALLOW_DEPTH
-            else (THESIS_RATE, 1.0)
-        )
-        columns = {
-            GIVEN_RATE: partial(rate_in, window="peak", depth=depth, law=law),
-            RATE: partial(peak_energy_rate, depth=depth),
-        }
-        rows = data.numbers(NINE, columns).assign(panel=f"{depth * 1e6:.0f} um")
+    panels = {SHALLOW_DEPTH: "600 um", RECEPTOR_DEPTH: "915 um"}
+    for depth, panel in panels.items():
+        law, factor = law_at(data, depth)
+        rate = partial(rate_in, window="peak", depth=depth, law=law)
+        rows = data.numbers(NINE, {GIVEN_RATE: rate, RATE: partial(peak_energy_rate, depth=depth)})
+        rows["panel"] = panel
         slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
-        parts.append(rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}"))
-        by = {GIVEN_RATE: rectified(slope * rows[RATE] + offset)}
-        parts.append(
-            rows.assign(source=f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}", **by)
-        )
+        yield rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}")
+        source = f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}"
+        yield rows.assign(source=source, **{GIVEN_RATE: rectified(slope * rows[RATE] + offset)})
     early = data.numbers(FAST, {GIVEN_RATE: partial(rate_in, window="first 200 ms")})
-    early = early[early[CURVATURE] < 700].assign(
-        panel="TouchSim", series="predicted, cylinders", source=f"{SIMULATED}: Eq 5-1"
-    )
-    mine = [
-        rows.assign(panel=panel)
-        for panel in ("600 um", "915 um")
-        if len(rows := given(data, "peak", 40))
-    ]
-    return below(
-        pd.concat([*parts, early], ignore_index=True),
-        published(data, "TouchSim", "first 200 ms", True),
-        *mine,
-    )
+    of = {"panel": "TouchSim", "series": "predicted, cylinders", "source": f"{SIMULATED}: Eq 5-1"}
+    yield within(early.assign(**of))
+    yield published(data, "TouchSim", "first 200 ms", True)
+    for panel in panels.values():
+        yield given(data, "peak", 40).assign(panel=panel)
 
 
-# --- drawing ---------------------------------------------------------------------------------------------
+# --- drawing --------------------------------------------------------------------------------------
 
 
-def stamp(
-    ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, va: str = "bottom"
-) -> None:
+def stamp(ax: Axes, text: str, x: float = 0.985, y: float = 0.03, va: str = "bottom") -> None:
     """A word in the picture, so that it is not taken for a recording."""
-    ax.text(x, y, text, transform=ax.transAxes, style="italic", color=style.GREY, ha="right", va=va)
+    look = {"style": "italic", "color": style.GREY, "ha": "right", "va": va}
+    ax.text(x, y, text, transform=ax.transAxes, **look)
 
 
-def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
+def points(ax: Axes, rows: DataFrame, x: str, y: str, marker: str = "o", size: float = 30) -> None:
     """One point a surface, in the surfaces' colours; the errors of those over 2 % of the largest as
     bars.
     """
-    look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
     axs.bars(ax, rows, x, y, rows[y].abs().max())
-    ax.scatter(
-        rows[x], rows[y], color=[axs.look(label)["color"] for label in rows["surface"]], **look
-    )
+    colours = [axs.look(label)["color"] for label in rows["surface"]]
+    look = {"marker": marker, "s": size, "zorder": 3, "clip_on": False}
+    ax.scatter(rows[x], rows[y], color=colours, **look)
 
 
-def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
+def draw_given(ax: Axes, frame: DataFrame, column: str = GIVEN_RATE) -> None:
     """What was recorded under the same protocol: a rate whose surface is one of two spans both."""
-    if column not in frame:
-        return
-    rows = frame[frame["source"].str.contains(r"stated in the thesis|^measured")]
-    printed = rows["source"].str.startswith("stated")
-    for mine, look, label in (
-        (
-            rows[printed],
-            {"marker": "s", "mfc": "none", "mec": style.INK},
-            "printed in the thesis, uncertain",
-        ),
-        (rows[~printed], {"marker": "D", "color": style.INK}, "recorded"),
+    printed = {"marker": "s", "mfc": "none", "mec": style.INK}
+    recorded = {"marker": "D", "color": style.INK}
+    for source, look, label in (
+        ("stated in the thesis", printed, "printed in the thesis, uncertain"),
+        ("measured", recorded, "recorded"),
     ):
-        if mine.empty:
+        rows = frame[frame["source"].str.startswith(source)]
+        if column not in frame or rows.empty:
             continue
-        other = mine[DOUBT].where(mine[DOUBT].notna(), mine[CURVATURE])
-        ax.hlines(mine[column], mine[CURVATURE], other, color=style.INK, lw=0.8)
-        middle = (mine[CURVATURE] + other) / 2
-        ax.plot(middle, mine[column], ls="none", ms=5, zorder=4, label=label, **look)
-        if SPREAD in mine:
-            ax.errorbar(
-                middle,
-                mine[column],
-                mine[SPREAD],
-                ls="none",
-                capsize=2,
-                color=style.INK,
-                lw=0.8,
-                zorder=3,
-            )
+        other = rows[DOUBT].fillna(rows[CURVATURE])
+        middle = (rows[CURVATURE] + other) / 2
+        ax.hlines(rows[column], rows[CURVATURE], other, color=style.INK, lw=0.8)
+        ax.plot(middle, rows[column], ls="none", ms=5, zorder=4, label=label, **look)
+        if SPREAD in rows:
+            bar = {"ls": "none", "capsize": 2, "color": style.INK, "lw": 0.8, "zorder": 3}
+            ax.errorbar(middle, rows[column], rows[SPREAD], **bar)
 
 
-def source_text(rows: pd.DataFrame) -> str:
+def source_text(rows: DataFrame) -> str:
     """What follows the colon in the source of some simulated rows."""
     return rows["source"].iloc[0].partition(": ")[2].replace("R2", "R²")
 
 
-def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def trains(fig, frame, spec):
     """Force above, nine times four predicted trains of impulses, mean rates of the hold at the
     right.
     """
     upper, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1, 6.2])
-    force = frame[frame[FORCE].notna() & is_simulated(frame)]
+    force = frame[frame["panel"] == "force"]
     upper.plot(force[TIME], force[FORCE], color=style.INK, clip_on=False)
-    axs.limit_axis(upper, frame, FORCE)
+    axs.limit_axes(upper, frame, y=FORCE)
     upper.set(ylabel=FORCE.label, yticks=[0, 20])
     place = {label: k for k, label in enumerate(SURFACES)}
-    for (label, series), train in frame[frame[IMPULSE].notna()].groupby(["surface", "series"]):
+    impulses = frame[frame["panel"] == "impulses"]
+    for (label, series), train in impulses.groupby(["surface", "series"]):
         row = place[label] + (int(series.split()[1]) - 1) * 0.2 - 0.3
         ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, **axs.look(label), lw=0.8)
-    ax.set(
-        xlim=(0, force[TIME].max()),
-        ylim=(8.6, -0.6),
-        xlabel=TIME.label,
-        ylabel=CURVATURE.label,
-        yticks=range(9),
-    )
-    ax.set_yticklabels(["flat plate", *SURFACES[1:]])
+    ax.set(xlim=(0, force[TIME].max()), ylim=(8.6, -0.6), xlabel=TIME.label, ylabel=CURVATURE.label)
+    ax.set_yticks(range(9), ["flat plate", *SURFACES[1:]])
     ax.tick_params(left=False)
     for k in range(8):
         ax.axhline(k + 0.5, color="0.9", lw=0.6, zorder=0)
-    outside = {"transform": ax.get_yaxis_transform(), "ha": "right"}
-    rows = frame[frame["panel"] == "mean rate of the hold"]
-    for label, rate in zip(rows["surface"], rows[GIVEN_RATE], strict=True):
-        ax.text(1.062, place[label], f"{rate:.1f}", va="center", **outside)
-    curvatures = rows.set_index("surface")[CURVATURE]
-    for entry in frame[frame["source"].str.startswith(("stated", "measured"))].to_dict("records"):
-        at = [
-            float((curvatures - k).abs().argmin())
-            for k in (entry[CURVATURE], entry[DOUBT])
-            if k == k
-        ]
-        printed = f"{entry[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in entry["source"])
-        ax.text(1.135, np.mean(at), printed, va="center", color=style.GREY, **outside)
-    outside |= {"fontsize": 6.5}
-    ax.text(1.066, -0.62, "predicted", color=style.INK, va="bottom", **outside)
-    ax.text(1.135, -0.62, "printed", color=style.GREY, va="bottom", **outside)
-    ax.text(1.135, 8.75, "impulses/s", color=style.INK, va="top", **outside)
-    upper.text(
-        0.99,
-        0.5,
-        "predicted, not recorded",
-        transform=upper.transAxes,
-        ha="right",
-        va="center",
-        style="italic",
-        color=style.GREY,
-    )
+
+    def at_the_right(x, y, text, **look):
+        ax.text(x, y, text, transform=ax.get_yaxis_transform(), ha="right", **look)
+
+    rows = frame[frame["panel"] == "mean rate of the hold"].set_index("surface")
+    for label, rate in rows[GIVEN_RATE].items():
+        at_the_right(1.062, place[label], f"{rate:.1f}", va="center")
+    given_rates = frame[frame["source"].str.startswith(("stated", "measured"))]
+    for _, row in given_rates.iterrows():
+        at = [abs(rows[CURVATURE] - k).argmin() for k in row[[CURVATURE, DOUBT]].dropna()]
+        text = f"{row[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in row["source"])
+        at_the_right(1.135, np.mean(at), text, va="center", color=style.GREY)
+    at_the_right(1.066, -0.62, "predicted", va="bottom", fontsize=6.5)
+    at_the_right(1.135, -0.62, "printed", va="bottom", **axs.NOTE)
+    at_the_right(1.135, 8.75, "impulses/s", va="top", fontsize=6.5)
+    stamp(upper, "predicted, not recorded", x=0.99, y=0.5, va="center")
 
 
-def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+def nine_frequencies(ax, frame, spec):
     """Nine traces of predicted frequency, labelled at the right, over the rates they are made
     from.
     """
     ends, both = {}, frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
-    axs.limit_axis(ax, both[(both[TIME] <= 2) | both[TIME].isna()], FREQUENCY, text=False)
+    axs.limit_axes(ax, both[~(both[TIME] > 2)], y=FREQUENCY, text=False)
     for label in SURFACES:
         rows, look = frame[frame["surface"] == label], axs.look(label)
         rate, frequency = rows[rows["series"] == "rate"], rows[rows["series"] != "rate"]
@@ -589,225 +491,172 @@ def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         for leg in (rate[:jump], rate[jump:]):
             axs.curve(ax, leg, TIME, IMPULSE_RATE, whole=rate, lw=1.3, **look)
         often = np.interp(frequency[TIME], rate[TIME], rate[IMPULSE_RATE]) >= OFTEN
-        ax.plot(
-            frequency[TIME], frequency[FREQUENCY].where(often), ".", ms=2, **look | {"ls": "none"}
-        )
+        dots = look | {"marker": ".", "ms": 2, "ls": "none"}
+        ax.plot(frequency[TIME], frequency[FREQUENCY].where(often), **dots)
         ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
     style.label_ends(ax, ends, 2.12, "curvature (1/m)")
     dots = f"dots: mean frequency of its impulses,\nwhere over {OFTEN} a second"
     stamp(ax, f"predicted, not recorded\nlines: rate\n{dots}", x=0.8, y=0.99, va="top")
 
 
-def points_and_line(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+def points_and_line(ax, frame, spec):
     """Named points of nine surfaces, the line through them, and recordings if there are any."""
     x, y = spec.x, spec.y[0]
+    axs.wide_limits(ax, frame, x, y)
     line = frame[frame["source"].str.contains("line")]
     ax.plot(line[x], line[y], color=style.GREY, lw=1, label=source_text(line))
     own = frame[frame["source"] == SIMULATED]
     points(ax, own, x, y)
     name_points(ax, own, x, y, line)
-    mine = frame[frame["source"].str.startswith("measured")]
-    if len(mine):
-        ax.plot(mine[x], mine[y], "D", color=style.INK, ms=4.5, label="recorded")
+    recorded = frame[frame["source"].str.startswith("measured")]
+    if len(recorded):
+        ax.plot(recorded[x], recorded[y], "D", color=style.INK, ms=4.5, label="recorded")
     stamp(ax, "predicted")
 
 
-def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame) -> None:
+def name_points(ax: Axes, rows: DataFrame, x: str, y: str, line: DataFrame) -> None:
     """Curvatures beside points, on the side away from the line; those at the same place share a
     label.
     """
     rows = rows.sort_values([x, y])
     place = rows[[x, y]].to_numpy() / np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
-    groups = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(place, axis=0).T) > 0.03)])
+    groups = np.append(0, np.cumsum(np.hypot(*np.diff(place, axis=0).T) > 0.03))
     for _, group in rows.groupby(groups):
         at = group[[x, y]].mean()
         across, up = ax.transLimits.transform(at)
-        floor = up < 0.1  # there the name is above the point
-        above = floor or at[y] > np.interp(at[x], line[x], line[y])
-        left = above and across > 0.08
-        how = {
-            "va": "bottom" if above else "top",
-            "ha": "center" if floor else "right" if left else "left",
-        }
-        away = (0 if floor else -5 if left else 5, 4 if above else -4)
-        ax.annotate(
-            ", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how
-        )
+        if up < 0.1:  # on the floor the name is above the point
+            away, how = (0, 4), {"va": "bottom", "ha": "center"}
+        elif at[y] <= np.interp(at[x], line[x], line[y]):
+            away, how = (5, -4), {"va": "top", "ha": "left"}
+        else:
+            left = across > 0.08
+            away, how = (-5 if left else 5, 4), {"va": "bottom", "ha": "right" if left else "left"}
+        text = ", ".join(group["surface"])
+        ax.annotate(text, at, away, textcoords="offset points", fontsize=6.5, **how)
 
 
-def peak_and_steady_over_curvature(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+def peak_and_steady_over_curvature(ax, frame, spec):
     """Peak (triangles) and steady rate (crosses), dotted, with their lines."""
-    own = frame[frame["source"] == SIMULATED]
+    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
+    own, kinds = frame[frame["source"] == SIMULATED], []
     for column, marker, name in ((GIVEN_RATE, "^", "peak"), (STEADY_RATE, "P", "steady")):
         ax.plot(own[CURVATURE], own[column], ":", color=style.GREY, lw=0.9, zorder=1)
-        points(ax, own, CURVATURE, column, marker=marker, s=38)
+        points(ax, own, CURVATURE, column, marker, 38)
         line = frame[frame["source"].str.contains("line") & frame[column].notna()]
         ax.plot(line[CURVATURE], line[column], color=style.INK, lw=1)
         draw_given(ax, frame[frame[column].notna()], column)
-        end = line.iloc[-1]
-        ax.annotate(
-            f"{name}: {source_text(line)}",
-            (end[CURVATURE], end[column]),
-            (0, 5),
-            textcoords="offset points",
-            ha="right",
-            fontsize=6.5,
-            color=style.INK,
-        )
-    kinds = [
-        style.handle(f"{name} rate", ls=":", marker=m, color=style.INK)
-        for m, name in (("^", "peak"), ("P", "steady"))
-    ]
+        away = {"xytext": (0, 5), "textcoords": "offset points", "ha": "right", "fontsize": 6.5}
+        ax.annotate(f"{name}: {source_text(line)}", line[[CURVATURE, column]].iloc[-1], **away)
+        kinds.append(style.handle(f"{name} rate", ls=":", marker=marker, color=style.INK))
     ax.legend(handles=kinds + ax.get_legend_handles_labels()[0][:1], loc="upper left")
-    stamp(ax)
+    stamp(ax, "predicted")
 
 
-def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+def rate_over_width(ax, rows, spec):
     """Time runs from right to left, as the contact grows."""
     axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
     own = rows[is_simulated(rows)]
     look = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.8} | axs.look(own["surface"].iloc[0])
     axs.curve(ax, own, INVERSE_WIDTH, IMPULSE_RATE, **look)
-    ends = {"width_top": own[IMPULSE_RATE].iloc[0], "width_end": own[IMPULSE_RATE].iloc[-1]}
+    ends = dict(zip(("width_top", "width_end"), own[IMPULSE_RATE].iloc[[0, -1]], strict=True))
     axs.draw_bands(ax, rows, INVERSE_WIDTH, None, lambda row: ends[row[OF]])
     ax.locator_params(axis="x", nbins=4)
     if own[IMPULSE_RATE].max() == 0:
-        ax.text(
-            0.5,
-            0.2,
-            "below the threshold:\nno impulses predicted",
-            transform=ax.transAxes,
-            ha="center",
-            va="center",
-            fontsize=6.5,
-            color=style.GREY,
-        )
+        text = "below the threshold:\nno impulses predicted"
+        place = {"transform": ax.transAxes, "ha": "center", "va": "center"}
+        ax.text(0.5, 0.2, text, **place, **axs.NOTE)
 
 
-def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def twelve_nodes(fig, frame, spec):
     """Twelve panels: dotted simulated, solid and dashed by Eq 4-1."""
     axes = fig.subplots(4, 3, sharex=True, sharey=True)
     looks = {
-        "simulated": (P, axs.look("210") | {"lw": 1.6}),
-        "Eq 4-1, one set": (P_LAW, {"ls": style.DASHED, "lw": 1.0, "color": style.INK}),
-        "Eq 4-1, a set for each": (
-            P_LAW,
-            {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT},
-        ),
+        "simulated": axs.look("210") | {"lw": 1.6},
+        "Eq 4-1, one set": {"ls": style.DASHED, "lw": 1.0, "color": style.INK},
+        "Eq 4-1, a set for each": {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT},
     }
     wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
-    nodes = frame[is_simulated(frame)].groupby(NODE)
+    nodes = wide[is_simulated(frame)].groupby(NODE)
     for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=True)):
-        for series, (column, look) in looks.items():
+        for series, look in looks.items():
             own = rows[rows["series"] == series]
-            axs.curve(
-                ax,
-                own if column == P else own.assign(**dict.fromkeys(PARTS, np.nan)),
-                TIME,
-                column,
-                **look,
-            )
-        axs.limit_axis(ax, wide, P, marked=k == 5)
+            if series == "simulated":
+                axs.curve(ax, own, TIME, P, **look)
+            else:
+                ax.plot(own[TIME], own[P], **look)
+        axs.limit_axes(ax, wide, y=P, marked=k == 5)
         style.in_kilo(ax.yaxis)
         ax.set(title=f"x = {x:.3g} mm", **HOLD)
     axes[3, 1].set_xlabel(TIME.label)
     axes[2, 0].set_ylabel("contact pressure (kPa)", y=1.15)
-    names = {
-        "Eq 4-1, one set": "Eq 4-1, one set of constants",
-        "Eq 4-1, a set for each": "a set for each node",
-    }
-    style.header_legend(
-        fig, [style.handle(names.get(name, name), **look) for name, (_, look) in looks.items()]
-    )
+    names = ("simulated", "Eq 4-1, one set of constants", "a set for each node")
+    looks = dict(zip(names, looks.values(), strict=True))
+    style.header_legend(fig, [style.handle(name, **look) for name, look in looks.items()])
 
 
-def energy_and_law(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+def energy_and_law(ax, rows, spec):
     """Points simulated, line by Eq 4-4, and what is left between them."""
     own = rows[is_simulated(rows)]
-    axs.curve(
-        ax,
-        own,
-        TIME,
-        SED,
-        marker="o",
-        ls="none",
-        ms=2.4,
-        mfc="none",
-        mew=0.7,
-        **axs.look(own["surface"].iloc[0]),
-    )
+    look = {"marker": "o", "ms": 2.4, "mfc": "none", "mew": 0.7}
+    look |= axs.look(own["surface"].iloc[0]) | {"ls": "none"}
+    axs.curve(ax, own, TIME, SED, **look)
     ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
-    left = np.sqrt(np.mean((own[SED] - own[SED_LAW]) ** 2) / np.mean(own[SED] ** 2))
-    ax.text(
-        0.97,
-        0.06,
-        f"r.m.s. residual {left:.0%}",
-        transform=ax.transAxes,
-        ha="right",
-        fontsize=6.5,
-        color=style.GREY,
-    )
+    left = np.linalg.norm(own[SED] - own[SED_LAW]) / np.linalg.norm(own[SED])
+    text = f"r.m.s. residual {left:.0%}"
+    ax.text(0.97, 0.06, text, transform=ax.transAxes, ha="right", **axs.NOTE)
 
 
-def left_note(how: str) -> Callable[[pd.DataFrame], list[str]]:
+def left_note(frame: DataFrame) -> list[str]:
     """The usual line, of what is in no panel of its own: the large panel at the left."""
-    return lambda frame: axs.footnote(
-        frame[frame["panel"].isna() | frame["panel"].isin(("600 um", "915 um"))], how
-    )
+    left = frame["panel"].isna() | frame["panel"].isin(("600 um", "915 um"))
+    return axs.footnote(frame[left], OF_THE_LARGEST)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Beside:
+def own_and_others(fig, frame, spec, fill, ratios, others, names=(None,)):
     """Panels of predicted rates (values of ``panel``; None: what is in none), and at their right
-    rates of others, with ours.
+    rates of `others` (panel -> title and what differs), with ours.
     """
-
-    height: float
-    fill: Callable[[Axes, pd.DataFrame], None]
-    ratios: Sequence[float]
-    others: Mapping[str, tuple[str, str]]
-    names: Sequence[str | None] = (None,)
-    legend: Mapping[str, object] = field(default_factory=lambda: {"loc": "upper left"})
-    ylabel: str = GIVEN_RATE.label
-    header: float = 0.0
-
-    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
-        frame = frame if "panel" in frame else frame.assign(panel=np.nan)
-        axes = fig.subplots(1, len(self.ratios), width_ratios=self.ratios)
-        for ax, name in zip(axes, self.names, strict=False):
-            ranges = frame["source"].str.contains("axis range")
-            rows = frame[
-                frame["panel"].isna() if name is None else (frame["panel"] == name) | ranges
-            ]
-            axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
-            self.fill(ax, rows)
-            ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
-            ax.legend(**self.legend)
-        axes[0].set_ylabel(self.ylabel)
-        for ax, (name, (title, mismatch)) in zip(
-            axes[len(self.names) :], self.others.items(), strict=True
-        ):
-            beside(ax, frame[frame["panel"] == name], title, mismatch)
-            ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
-        return {}
+    if "panel" not in frame:
+        frame = frame.assign(panel=np.nan)
+    axes = fig.subplots(1, len(ratios), width_ratios=ratios)
+    for ax, name in zip(axes, names, strict=False):
+        ranges = frame["source"].str.contains("axis range")
+        own = frame["panel"] == name if name else frame["panel"].isna()
+        fill(ax, frame[own | ranges], spec)
+        ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
+    axes[0].set_ylabel(spec.y[0].label)
+    right = axes[len(names) :]
+    for ax, (name, (title, mismatch)) in zip(right, others.items(), strict=True):
+        beside(ax, frame[frame["panel"] == name], title, mismatch)
+        ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
 
 
-def points_and_law(ax: Axes, rows: pd.DataFrame, words: str = "predicted by Eq 5-1") -> None:
+def page_of(fill, ratios, others, **options) -> Page:
+    """A page of predicted rates and those of others."""
+    draw = partial(own_and_others, fill=fill, ratios=ratios, others=others, **options)
+    return Page(3.1, draw)
+
+
+def points_and_law(ax, rows, spec, words="predicted by Eq 5-1", legend=LOWER_RIGHT):
     """Points by Eq 5-1, and a linear function as a line."""
+    axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
     line = rows[rows["source"].str.contains("linear")]
     label = source_text(line).replace("peak energy", "peak\nenergy")
     ax.plot(line[CURVATURE], line[GIVEN_RATE], color=style.INK, lw=1.1, label=label)
     ax.plot([], [], "o", color=style.GREY, label=words)
     points(ax, rows[rows["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
     draw_given(ax, rows)
+    ax.legend(**legend)
 
 
-def stamped_law(ax: Axes, rows: pd.DataFrame) -> None:
-    points_and_law(ax, rows, "Eq 5-1, predicted from strain energy")
-    stamp(ax)
+def stamped_law(ax, rows, spec):
+    """The same, with a word that it is predicted."""
+    words = "Eq 5-1, predicted from strain energy"
+    points_and_law(ax, rows, spec, words, {"loc": "upper left"})
+    stamp(ax, "predicted")
 
 
-def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
+def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
     """A panel of rates measured elsewhere or of another model (points), with ours of the same force
     (lines): how far apart they are.
     """
@@ -815,45 +664,28 @@ def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
     if rows.empty:
         ax.text(0.5, 0.5, "no rates given", transform=ax.transAxes, ha="center", color=style.GREY)
         return
-    own, times = is_simulated(rows), []
-    curves = dict(list(rows[own].groupby("series", sort=False))) if "series" in rows else {}
-    fitted, curves = not curves, curves or {"linear in the pressure, fitted": rows[own]}
-    for marker, (name, theirs) in zip(
-        style.MARKERS, rows[~own].groupby("series", sort=False), strict=False
-    ):
-        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]] or list(curves)[
-            :1
-        ]
+    own, times = rows[is_simulated(rows)].sort_values(CURVATURE), []
+    fitted = "series" not in own or own["series"].isna().all()
+    if fitted:
+        own = own.assign(series="linear in the pressure, fitted")
+    curves = dict(list(own.groupby("series", sort=False)))
+    theirs = rows[~is_simulated(rows)].groupby("series", sort=False)
+    for marker, (name, points) in zip(style.MARKERS, theirs, strict=False):
         look = style.look_of("force (gf)", _force(name), "color")
         look |= {"marker": marker, "ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
-        ax.plot(theirs[CURVATURE], theirs[GIVEN_RATE], **look, label=name)
-        ours = curves[same[0]].sort_values(CURVATURE)
-        at = np.interp(theirs[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])
-        times += list((theirs[GIVEN_RATE] / at)[at > 1])
+        ax.plot(points[CURVATURE], points[GIVEN_RATE], **look, label=name)
+        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]]
+        ours = curves[(same or list(curves))[0]]
+        at = np.interp(points[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])
+        times += list((points[GIVEN_RATE] / at)[at > 1])
     for name, curve in curves.items():
-        curve = curve.sort_values(CURVATURE)
-        ax.plot(
-            curve[CURVATURE],
-            curve[GIVEN_RATE],
-            **style.look_of("force (gf)", _force(name)),
-            lw=1.1,
-            label=name,
-        )
-    ax.set(
-        xlim=(0, 1.04 * rows[CURVATURE].max()),
-        ylim=(0, 1.6 * rows[GIVEN_RATE].max()),
-        xlabel=CURVATURE.label,
-    )
+        look = style.look_of("force (gf)", _force(name)) | {"lw": 1.1}
+        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **look, label=name)
+    ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()))
+    ax.set_xlabel(CURVATURE.label)
     far = f"theirs over ours: {np.median(times):.1f} (median)" if times and not fitted else ""
-    ax.legend(
-        title=far,
-        alignment="left",
-        loc="upper left",
-        fontsize=6,
-        handlelength=1.8,
-        borderaxespad=0.2,
-        labelspacing=0.3,
-    )
+    small = {"fontsize": 6, "handlelength": 1.8, "borderaxespad": 0.2, "labelspacing": 0.3}
+    ax.legend(title=far, alignment="left", loc="upper left", **small)
 
 
 def _force(name: str) -> str:
@@ -861,59 +693,43 @@ def _force(name: str) -> str:
     return next((force for force in ("10", "15") if f"{force} g" in name), "20")
 
 
-def draw_rates(ax: Axes, frame: pd.DataFrame, spec: Figure | None = None) -> None:
+def draw_rates(ax, frame, spec):
     """Predicted rates against curvature, with what was recorded under the same protocol."""
+    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
     own = frame[is_simulated(frame) & frame["surface"].notna()]
-    ax.plot(own[CURVATURE], own[GIVEN_RATE], color=style.GREY, lw=0.9, zorder=1)
-    ax.plot([], [], "o-", color=style.GREY, lw=0.9, label="predicted by Eq 5-1")
+    line = {"color": style.GREY, "lw": 0.9}
+    ax.plot(own[CURVATURE], own[GIVEN_RATE], **line, zorder=1)
+    ax.plot([], [], "o-", **line, label="predicted by Eq 5-1")
     points(ax, own, CURVATURE, GIVEN_RATE)
     draw_given(ax, frame)
     stamp(ax, "points: predicted")
+    ax.legend(loc="upper left")
 
 
-def of_rates(
-    number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, **options
-) -> Figure:
+def of_rates(number, title, rows, layout, thesis, **options) -> Figure:
     """A figure of rates over curvature, or of one rate over another."""
-    options = {
-        "how": OF_THE_LARGEST,
-        "measured": RATES,
-        "remarks": (DEEP,),
-        "x": CURVATURE,
-        "y": (GIVEN_RATE,),
-    } | options
-    return Figure(number, title, runs, thesis=thesis, layout=layout, rows=rows, **options)
+    shared = {"runs": NINE, "x": CURVATURE, "y": (GIVEN_RATE,)}
+    shared |= {"how": OF_THE_LARGEST, "measured": RATES}
+    return Figure(number, title, thesis=thesis, layout=layout, rows=rows, **shared | options)
 
 
-def points_of(fill, legend: bool = True, **options) -> Panels:
+def points_of(fill, **options) -> Panels:
     """One panel of points, on axes that hold all of them."""
-    return Panels(
-        height=3.0,
-        limit="wide",
-        fill=fill,
-        legend={"loc": "upper left"} if legend else None,
-        **options,
-    )
+    return Panels(height=3.0, limit="", fill=fill, **options)
 
 
 def from_depth(number: str, depth: float, axis: str) -> Figure:
     """Figs 4-26 and 4-27."""
-    words = f"{depth * 1e6:.0f} µm"
-    title = f"Predicted mean rate of the hold from strain energy at {words}, 40 gf/s"
+    title = f"Predicted mean rate of the hold from strain energy at {depth * 1e6:.0f} µm, 40 gf/s"
+    others = {"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)}
     return of_rates(
         number,
         title,
         partial(mean_rates, depth=depth),
-        Beside(
-            height=3.1,
-            fill=draw_rates,
-            ratios=(1.7, 1, 1),
-            others={"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)},
-        ),
+        page_of(fill=draw_rates, ratios=(1.7, 1, 1), others=others),
         {GIVEN_RATE: axis, CURVATURE: "T202"},
-        (NINE, *LOWER.values()),
-        note=left_note(OF_THE_LARGEST),
-        remarks=(LAW_NOTE, BESIDE),
+        runs=(NINE, *LOWER.values()),
+        note=left_note,
     )
 
 
@@ -925,19 +741,10 @@ FIGURES = (
         TIME,
         (IMPULSE,),
         {FORCE: "T080"},
-        Own(height=5.0, paint=trains),
+        Page(5.0, trains),
         rows=trains_and_rates,
         measured=RATES,
         how="of the largest rate",
-        remarks=(
-            f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient "
-            "of variation of the "
-            f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the "
-            "hold; grey: rates printed "
-            "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between "
-            "two rows may belong to "
-            "either.",
-        ),
     ),
     Figure(
         "4-3",
@@ -948,34 +755,24 @@ FIGURES = (
         {TIME: "T091", FREQUENCY: "T090"},
         Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}),
         rows=frequencies,
-        remarks=(
-            f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses "
-            "(integrate-and-fire, "
-            f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",
-        ),
     ),
     of_rates(
         "4-4",
         "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf",
         steady_over_peak,
-        points_of(points_and_line, xlabel=PEAK_WORDS),
+        points_of(points_and_line, legend={"loc": "upper left"}),
         {GIVEN_RATE: "T094", STEADY_RATE: "T095"},
-        x=GIVEN_RATE,
+        x=PEAK_RATE,
         y=(STEADY_RATE,),
-        remarks=(STEADY_NOTE,),
     ),
     of_rates(
         "4-5",
         "Predicted peak and steady rates against curvature",
         over_curvature,
-        points_of(
-            peak_and_steady_over_curvature,
-            False,
-            xlabel="surface curvature (1/m)",
-            ylabel="impulse rate (impulses/s)",
-        ),
+        points_of(peak_and_steady_over_curvature),
         {GIVEN_RATE: "T096", CURVATURE: "T162"},
-        remarks=(STEADY_NOTE,),
+        x=CURVATURE.reading(None, "surface curvature (1/m)"),
+        y=(GIVEN_RATE.reading(None, "impulse rate (impulses/s)"),),
     ),
     Figure(
         "4-9",
@@ -992,7 +789,6 @@ FIGURES = (
         },
         nine(SURFACES, 5.8, fill=rate_over_width, limit=""),
         rows=rate_and_width,
-        remarks=(f"{DEEP} Time runs leftwards: the contact grows.", OTHER_PADS),
         measured="pads",
         after=widths_of_other_pads,
     ),
@@ -1003,37 +799,25 @@ FIGURES = (
         TIME,
         (P, P_LAW),
         {TIME: "T155", P: "T154"},
-        Own(height=6.2, header=0.16, paint=twelve_nodes),
+        Page(6.2, twelve_nodes, 0.16),
         rows=nodes_by_law,
-        remarks=(
-            "Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the "
-            "edge's) + A3, from the peak "
-            "of a node on; constants by least squares. Nodes count from one spacing inside the "
-            "edge on.",
-        ),
     ),
     of_rates(
         "4-18",
         "Predicted peak rate against peak contact pressure",
         peaks_over_pressure,
-        points_of(points_and_line, ylabel=PEAK_WORDS),
+        points_of(points_and_line, legend={"loc": "upper left"}),
         {P_PEAK: "T159", GIVEN_RATE: "T160"},
         x=P_PEAK,
+        y=(PEAK_RATE,),
         width=style.COLUMN_WIDTH,
     ),
     of_rates(
         "4-19",
         "Mean rate from mean contact pressure, against curvature",
         linear_in_pressure,
-        Beside(height=3.1, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
+        page_of(fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
         {GIVEN_RATE: "T161", CURVATURE: "T162"},
-        remarks=(
-            f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not "
-            "public. Right: Goodwin, "
-            "Browning and Wheat (1995), digitised by a third party, impulses in the first second "
-            "at 20 gf; gain and "
-            "threshold of the line fitted to them.",
-        ),
     ),
     Figure(
         "4-22",
@@ -1044,9 +828,6 @@ FIGURES = (
         {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
         nine(SURFACES, 5.8, fill=energy_and_law, limit="y", set=HOLD | {"xlim": (0, 2.58)}),
         rows=energy_by_pressure,
-        remarks=(
-            "Points simulated; lines by Eq 4-4 with one set of constants for all nine surfaces.",
-        ),
     ),
     of_rates(
         "4-25",
@@ -1054,14 +835,8 @@ FIGURES = (
         held_rates,
         points_of(draw_rates),
         {GIVEN_RATE: "T201", CURVATURE: "T202"},
-        FAST,
+        runs=FAST,
         width=style.COLUMN_WIDTH,
-        remarks=(
-            f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of "
-            "Cysyk (1999), read "
-            "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may "
-            "belong to.",
-        ),
     ),
     from_depth("4-26", RECEPTOR_DEPTH, "T203"),
     from_depth("4-27", SHALLOW_DEPTH, "T204"),
@@ -1069,18 +844,15 @@ FIGURES = (
         "4-29",
         "Predicted peak rate, and from the peak rate of strain energy, against curvature",
         peak_rates,
-        Beside(
-            height=3.1,
+        page_of(
             fill=points_and_law,
             ratios=(1.25, 1.25, 1),
             names=("600 um", "915 um"),
             others={"TouchSim": ("TouchSim, first 200 ms", HALF_SPACE)},
-            ylabel="peak rate (impulses/s)",
-            legend={"loc": "lower right", "handlelength": 1.4},
         ),
         {GIVEN_RATE: "T207", CURVATURE: "T208"},
-        (NINE, FAST),
-        note=left_note(OF_THE_LARGEST),
-        remarks=(LAW_NOTE, SCALED),
+        runs=(NINE, FAST),
+        y=(PEAK_RATE,),
+        note=left_note,
     ),
 )

@@ -8,14 +8,14 @@ drawn, solid above, with the curvatures (1/m) of its convexities.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from pandas import DataFrame
+from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
 from cysyk1999.figures.grammar import (
@@ -23,10 +23,12 @@ from cysyk1999.figures.grammar import (
     Data,
     Figure,
     Lines,
-    Own,
+    Page,
     Panels,
+    above,
     nine,
     stack,
+    stacked,
     upper_profile,
 )
 from cysyk1999.measures.errors import PARTS, Curve, curve_errors, over_stroke, shared_place
@@ -46,12 +48,13 @@ from cysyk1999.measures.quantities import (
     STROKE_TIME,
     TIME,
     P,
+    Q,
     X,
     Y,
     sed,
 )
 from cysyk1999.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
-from cysyk1999.measures.table import reading
+from cysyk1999.measures.table import MEASURES, reading
 from cysyk1999.publishing import style
 from fingerpad.measures.features import (
     PRESSURE,
@@ -72,10 +75,6 @@ from fingerpad.measures.strokes import (
     time_of,
 )
 from fingerpad.planning.errors import PROFILE_ORDER
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Picture
 
 DEEP, SHALLOW = 915e-6, 560e-6  # m, receptors of Figs 5-13 and 5-18, and of 5-24
 TEN = "10 mm/s"
@@ -98,56 +97,43 @@ SAMPLED = replace(
     hidden={},
 )
 """The same at the points it was stepped to."""
-BY_SPEED = Lines()
+CENTRE = P_CENTRE.reading(P_CENTRE.read, P.label)
 TOP_OF_STRETCH = -0.5  # mm, where the thesis's axis of Fig 5-15 begins
 
 
-# --- rows of their own -----------------------------------------------------------------------------------
+# --- rows of their own ----------------------------------------------------------------------------
 
 
-def lengths(data: Data) -> pd.DataFrame:
+def lengths(data: Data) -> DataFrame:
     """Stroke distance over which the centre node touches each convexity, at every velocity."""
-    rows = data.convexities(SPEEDS, {LENGTH: "contact_length"}).drop(columns="convexity")
-    rows.insert(2, RADIUS, 1e3 / rows[CURVATURE])
-    return rows
+    rows = data.numbers(SPEEDS, {LENGTH: MEASURES["contact_length"]}, own=True)
+    return rows.drop(columns="convexity").assign(**{RADIUS: 1e3 / rows[CURVATURE]})
 
 
-def locations(data: Data, runs: Runs) -> pd.DataFrame:
+@stacked
+def locations(data: Data, runs: Runs) -> Iterator[DataFrame | Mapping]:
     """The surface's shape; skin and pressure within 5 mm of the middle, and the surface above it,
     at three stroke distances.
     """
     ((_, history, coarse),) = data.runs(runs)
     stroke = loaded(history)
     shape, heights = profile_and_height(stroke)
-    parts = [data.surface(next(iter(runs.scenes.values())), 4, 35)]
+    yield data.surface(runs[next(iter(runs))], 4, 35)
     for location in LOCATIONS:
         index = int(np.argmin(abs(distance(stroke) - location * 1e-3)))
         reached = distance(stroke)[index]
-        x, p = profile(stroke, index)
-        y = skin_at(stroke, index)[1]
+        (x, p), y = profile(stroke, index), skin_at(stroke, index)[1]
         shown = (abs(x) <= 5e-3) & (stroke["skin_y"].values > 0)
         over = np.linspace(-5e-3, 5e-3, 201)
+        height = heights[index] + shape.outline(over + reached)
+        curve = Curve(partial(profile_at, at=reached), False, PROFILE_ORDER)
+        of = {"source": SIMULATED, "panel": f"{location:g} mm", DISTANCE: reached * 1e3}
         skin = {"series": "skin", X: x[shown] * 1e3, Y: y[shown] * 1e3, P: p[shown]}
-        surface = {
-            "series": axs.SURFACE,
-            X: over * 1e3,
-            Y: (heights[index] + shape.outline(over + reached)) * 1e3,
-        }
-        errors = curve_errors(
-            history, coarse, Curve(partial(profile_at, at=reached), False, PROFILE_ORDER)
-        ).columns
-        for rows, checked in ((skin, errors), (surface, {})):
-            part = (
-                {"source": SIMULATED, "panel": f"{location:g} mm"}
-                | rows
-                | {DISTANCE: reached * 1e3}
-                | checked
-            )
-            parts.append(pd.DataFrame(part))
-    return pd.concat(parts, ignore_index=True)
+        yield of | skin | curve_errors(history, coarse, curve).columns
+        yield of | {"series": axs.SURFACE, X: over * 1e3, Y: height * 1e3}
 
 
-def profile_at(history: xr.Dataset, at: float) -> tuple[np.ndarray, np.ndarray]:
+def profile_at(history: Dataset, at: float) -> tuple[np.ndarray, np.ndarray]:
     """Position (m) and pressure (Pa) of the upper skin at the stroke distance nearest to one
     (m).
     """
@@ -155,40 +141,34 @@ def profile_at(history: xr.Dataset, at: float) -> tuple[np.ndarray, np.ndarray]:
     return upper_profile(stroke, int(np.argmin(abs(distance(stroke) - at))))
 
 
-def nodes_over_time(data: Data) -> pd.DataFrame:
+@stacked
+def nodes_over_time(data: Data) -> Iterator[Mapping]:
     """Pressure and skin curvature over time at nine nodes, 10 mm/s."""
     ((_, history, coarse),) = data.runs(SUB_TEN)
-    stroke, parts = loaded(history), []
+    stroke = loaded(history)
     nodes = nodes_at(stroke)
     for place, node, curvature in zip(NODES, nodes, skin_curvatures(stroke, nodes), strict=True):
-        part = {
-            "panel": f"X = {place:g} mm",
-            NODE: round(1e3 * float(stroke["skin_x"].values[node]), 5),
-            TIME: time_of(stroke),
-        }
-        part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * curvature}
-        pressed = over_stroke(
-            partial(pressure_at, place=shared_place(float(stroke["skin_x"].values[node]), coarse))
-        )
-        parts.append(pd.DataFrame(part | curve_errors(history, coarse, pressed).columns))
-    return pd.concat(parts, ignore_index=True)
+        x = float(stroke["skin_x"].values[node])
+        pressed = over_stroke(partial(pressure_at, place=shared_place(x, coarse)))
+        of = {"panel": f"X = {place:g} mm", NODE: round(1e3 * x, 5), TIME: time_of(stroke)}
+        of |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * curvature}
+        yield of | curve_errors(history, coarse, pressed).columns
 
 
-def largest_energies(data: Data) -> pd.DataFrame:
+def largest_energies(data: Data) -> DataFrame:
     """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10
     mm/s.
     """
-    pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(
-        series="ramp and hold"
-    )
-    stroked = data.convexities(TEN_RUN, {SED: "convexity_energy"})
-    return pd.concat([pressed, stroked])[["series", CURVATURE, SED, *PARTS]]
+    pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True)
+    stroked = data.numbers(TEN_RUN, {SED: MEASURES["convexity_energy"]}, own=True)
+    rows = pd.concat([pressed.assign(series="ramp and hold"), stroked])
+    return rows[["series", CURVATURE, SED, *PARTS]]
 
 
-# --- what layouts do not say -----------------------------------------------------------------------------
+# --- what layouts do not say ----------------------------------------------------------------------
 
 
-def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+def at_ten(ax, frame, spec):
     """The range over the velocities, and one of them."""
     rows, (y,) = frame[is_simulated(frame)], spec.y
     extent = rows.groupby(spec.x)[y].agg(["min", "max"])
@@ -196,69 +176,54 @@ def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
     ax.fill_between(extent.index, *extent.to_numpy().T, color="#9fc3d6", lw=0, label=words)
     line = rows[rows["series"] == TEN].sort_values(spec.x)
-    axs.curve(
-        ax, line, spec.x, y, points=True, color=style.INK, marker="o", ms=3, lw=0.8, label=TEN
-    )
+    look = {"color": style.INK, "marker": "o", "ms": 3, "lw": 0.8, "label": TEN}
+    axs.curve(ax, line, spec.x, y, points=True, **look)
 
 
-def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def three_locations(fig, frame, spec):
     """The surface with a star at each location above; its window, the skin and the pressure at each
     below.
     """
     grid = fig.add_gridspec(4, 3, height_ratios=[1.0, 1.0, 1.5, 1.5])
-    trace, shape, marks = (
-        fig.add_subplot(grid[0, :]),
-        axs.shape_of(frame),
-        frame[~is_simulated(frame)],
-    )
+    trace = fig.add_subplot(grid[0, :])
+    shape, marks = axs.shape_of(frame), frame[~is_simulated(frame)]
     axs.draw_surface(trace, frame)
     trace.tick_params(labelbottom=True)
-    own = marks[marks["panel"] == axs.SURFACE]
+    ends = marks.loc[marks["panel"] == axs.SURFACE, DISTANCE].dropna()
     trace.set(xlabel=DISTANCE.label, ylabel=HEIGHT.label)
-    trace.set_xlim(own[DISTANCE].min() if own[DISTANCE].notna().any() else 5, shape[DISTANCE].max())
+    trace.set_xlim(ends.min() if len(ends) else 5, shape[DISTANCE].max())
+    star = {"marker": "*", "ms": 8, "mec": "white", "mew": 0.5, "clip_on": False}
     for column, location in enumerate(LOCATIONS):
-        panel = f"{location:g} mm"
-        rows, axes = (
-            axs.rows_of(frame, "panel", panel),
-            [fig.add_subplot(grid[row, column]) for row in (1, 2, 3)],
-        )
+        rows = frame[frame["panel"] == f"{location:g} mm"]
+        window, touching, pressed = axes = [fig.add_subplot(grid[k, column]) for k in (1, 2, 3)]
         skin, surface = (rows[rows["series"] == series] for series in ("skin", axs.SURFACE))
         at = skin[DISTANCE].iloc[0]
-        star = {
-            "marker": "*",
-            "ms": 8,
-            "color": style.HIGHLIGHT,
-            "mec": "white",
-            "mew": 0.5,
-            "clip_on": False,
-        }
-        window = marks.loc[marks["panel"] == panel, DISTANCE]
-        for ax in (trace, axes[0]):
-            ax.plot(at, np.interp(at, shape[DISTANCE], shape[HEIGHT]), **star)
-        axes[0].fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
-        axes[0].plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
-        low, high = (window.min(), window.max()) if len(window) else (at - 4, at + 4)
-        axes[0].set(
-            xlim=(low, high), ylim=(-0.52, 0.36), xlabel=DISTANCE.label, title=f"at {at:g} mm"
-        )
-        axes[1].fill_between(surface[X], surface[Y], 6.4, color=style.PALE, lw=0)
-        axes[1].plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
-        axes[1].plot(skin[X], skin[Y], color=style.INK)
-        axes[1].set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
-        axs.limit_axis(axes[2], frame, P, text=column == 2)
-        axs.curve(axes[2], skin, X, P, color=style.INK)
-        axes[2].set(xlim=(-5, 5), xlabel=X.label)
-        style.in_kilo(axes[2].yaxis)
-        for ax, name in zip(
-            axes,
-            (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)"),
-            strict=True,
-        ):
+        height = np.interp(at, shape[DISTANCE], shape[HEIGHT])
+        for ax in (trace, window):
+            ax.plot(at, height, color=style.HIGHLIGHT, **star)
+        window.fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
+        window.plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
+        ends = rows.loc[~is_simulated(rows), DISTANCE].dropna()
+        low, high = (ends.min(), ends.max()) if len(ends) else (at - 4, at + 4)
+        window.set(xlim=(low, high), ylim=(-0.52, 0.36))
+        window.set(xlabel=DISTANCE.label, title=f"at {at:g} mm")
+        touching.fill_between(surface[X], surface[Y], 6.4, color=style.PALE, lw=0)
+        touching.plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
+        touching.plot(skin[X], skin[Y], color=style.INK)
+        touching.set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
+        axs.limit_axes(pressed, frame, y=P, text=column == 2)
+        axs.curve(pressed, skin, X, P, color=style.INK)
+        pressed.set(xlim=(-5, 5), xlabel=X.label)
+        style.in_kilo(pressed.yaxis)
+        for ax in axes:
             ax.tick_params(labelleft=column == 0)
-            ax.set_ylabel(name if column == 0 else "")
+    names = (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)")
+    for ax, name in zip(fig.axes[1:4], names, strict=True):
+        ax.set_ylabel(name)
 
 
-def zero_line(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+def zero_line(panels, frame):
+    """A line at zero."""
     next(iter(panels.values())).axhline(0, color=style.GREY, lw=0.5, zorder=1)
 
 
@@ -266,7 +231,7 @@ LOOKS = {P: {"color": style.INK}, SKIN_CURVATURE: OTHER | {"lw": 0.9}}
 AT_NODES = tuple(f"X = {place:g} mm" for place in NODES)
 
 
-def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+def two_axes(panels, frame):
     """Curvature (dashed, left axis) and pressure (solid, right axis)."""
     least, highest = frame[SKIN_CURVATURE].min(), frame[P].max()
     for number, (panel, ax) in enumerate(panels.items()):
@@ -283,38 +248,25 @@ def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         right.tick_params(labelright=number % 3 == 2)
         if number == 5:
             right.set_ylabel("contact pressure (kPa)")
-    names = {
-        P: "contact pressure (right axis)",
-        SKIN_CURVATURE: "skin curvature in contact (left axis)",
-    }
-    style.header_legend(ax.figure, [style.handle(names[k], **look) for k, look in LOOKS.items()])
+    names = ("contact pressure (right axis)", "skin curvature in contact (left axis)")
+    handles = [style.handle(name, **LOOKS[q]) for name, q in zip(names, LOOKS, strict=True)]
+    style.header_legend(ax.figure, handles)
 
 
-def from_half_a_millimetre(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+def from_half_a_millimetre(panels, frame):
     """The axis of the thesis, which begins where the skin is already stretched."""
     (ax,) = panels.values()
-    axs.limit_axis(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], LATERAL)
+    axs.limit_axes(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], y=LATERAL)
     ax.set_ylim(None, TOP_OF_STRETCH)
-    ax.text(
-        2.0,
-        TOP_OF_STRETCH - 0.02,
-        "from 0 at the start,\noff the axis",
-        va="top",
-        fontsize=6.5,
-        color=style.GREY,
-    )
+    text = "from 0 at the start,\noff the axis"
+    ax.text(2.0, TOP_OF_STRETCH - 0.02, text, va="top", **axs.NOTE)
 
 
 def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
     """Figs 5-5 and 5-6."""
-    windows = {
-        f"{location:g} mm": id_
-        for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)
-    }
-    ids = {
-        DISTANCE: windows | {axs.SURFACE: "T234"},
-        HEIGHT: {axs.SURFACE: "T233a", **dict.fromkeys(windows, "T238")},
-    }
+    windows = {f"{location:g} mm": f"T{235 + k}" for k, location in enumerate(LOCATIONS)}
+    heights = {axs.SURFACE: "T233a", **dict.fromkeys(windows, "T238")}
+    ids = {DISTANCE: windows | {axs.SURFACE: "T234"}, HEIGHT: heights}
     return Figure(
         number,
         title,
@@ -322,15 +274,28 @@ def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
         X,
         (Y, P),
         ids | {X: "T239", Y: "T239a", P: pressure},
-        Own(height=6.2, paint=three_locations),
+        Page(6.2, three_locations),
         key="panel",
         rows=partial(locations, runs=runs),
     )
 
 
-def below(height: float = 3.2, **options) -> Panels:
-    """One panel below the surface."""
-    return Panels(height=height, **options)
+def energy_figure(number: str, depth: float, thesis: Mapping[str, str], low: float) -> Figure:
+    """Figs 5-13 and 5-24."""
+    um = f"{depth * 1e6:.0f} µm"
+    receptor = Q(RECEPTOR.name, RECEPTOR.unit, read=lambda history: depth * 1e6, checked=False)
+    columns = (DISTANCE, sed(depth), receptor)
+    return Figure(
+        number,
+        f"Strain energy density {um} under the centre at five stroking velocities",
+        SPEEDS,
+        DISTANCE,
+        (SED,),
+        thesis,
+        stack(5.6),
+        rows=lambda data: data.strokes((SPEEDS,), columns, (low, 80)),
+        surface=(low, 80),
+    )
 
 
 FIGURES = (
@@ -343,13 +308,12 @@ FIGURES = (
         {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
         Panels(
             height=3.0,
-            pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)),
+            names=((CURVATURE, LENGTH), (RADIUS, LENGTH)),
             shape=(1, 2),
             fill=at_ten,
             legend={"loc": "lower right"},
         ),
         rows=lengths,
-        remarks=("Recorded burst widths are not available.",),
     ),
     at_locations(
         "5-5",
@@ -365,11 +329,15 @@ FIGURES = (
         "Centre pressure and scaled skin curvature, stepped by 1 mm",
         STEPPED_OVER,
         DISTANCE,
-        (P_CENTRE, SCALED_CURVATURE),
+        (CENTRE, SCALED_CURVATURE),
         {DISTANCE: "T246", P_CENTRE: "T245"},
-        below(fill=SAMPLED, ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}),
+        Panels(
+            height=3.2,
+            fill=SAMPLED,
+            legend={"loc": "lower right", "handlelength": 2.6},
+            extra=zero_line,
+        ),
         surface=(0, 50),
-        extra=zero_line,
     ),
     Figure(
         "5-8",
@@ -378,7 +346,8 @@ FIGURES = (
         DISTANCE,
         (P_CENTRE,),
         {DISTANCE: "T248", P_CENTRE: "T247"},
-        below(
+        Panels(
+            height=3.2,
             fill=Lines(
                 looks={
                     "stepped": OTHER | {"marker": ".", "ms": 3},
@@ -397,7 +366,7 @@ FIGURES = (
         DISTANCE,
         (P_CENTRE,),
         {DISTANCE: "T248", P_CENTRE: "T250"},
-        below(fill=BY_SPEED, legend={"loc": "upper right", "handlelength": 2.8}),
+        Panels(height=3.2, legend={"loc": "upper right", "handlelength": 2.8}),
         surface=(0, 50),
     ),
     Figure(
@@ -412,12 +381,12 @@ FIGURES = (
             5.6,
             header=0.16,
             by="panel",
-            titles=str,
+            title=above,
+            extra=two_axes,
             limit="x",
             fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P}),
         ),
         rows=nodes_over_time,
-        extra=two_axes,
         how=HOW,
     ),
     Figure(
@@ -427,8 +396,10 @@ FIGURES = (
         STROKE_TIME,
         (P_CENTRE, SCALED_CURVATURE),
         {TIME: "T257", P_CENTRE: "T256"},
-        below(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
-        keep=(DISTANCE,),
+        Panels(height=3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
+        rows=lambda data: data.strokes(
+            (TEN_RUN,), (DISTANCE, STROKE_TIME, P_CENTRE, SCALED_CURVATURE), (0, 80)
+        ),
         surface=(0, 80),
     ),
     Figure(
@@ -441,17 +412,7 @@ FIGURES = (
         stack(5.6),
         surface=(0, 80),
     ),
-    Figure(
-        "5-13",
-        "Strain energy density 915 µm under the centre at five stroking velocities",
-        SPEEDS,
-        DISTANCE,
-        (sed(DEEP),),
-        {DISTANCE: "T262", SED: "T261"},
-        stack(5.6),
-        surface=(0, 80),
-        constants={RECEPTOR: DEEP * 1e6},
-    ),
+    energy_figure("5-13", DEEP, {DISTANCE: "T262", SED: "T261"}, 0),
     Figure(
         "5-15",
         "Lateral displacement of the centre node",
@@ -459,14 +420,13 @@ FIGURES = (
         DISTANCE,
         (LATERAL,),
         {DISTANCE: "T260", LATERAL: "T266b"},
-        below(
-            3.3,
-            fill=BY_SPEED,
+        Panels(
+            height=3.3,
             limit="x",
             legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8},
+            extra=from_half_a_millimetre,
         ),
         surface=(0, 80),
-        extra=from_half_a_millimetre,
     ),
     Figure(
         "5-18",
@@ -492,15 +452,5 @@ FIGURES = (
         width=style.COLUMN_WIDTH,
         joined="series",
     ),
-    Figure(
-        "5-24",
-        "Strain energy density 560 µm under the centre at five stroking velocities",
-        SPEEDS,
-        DISTANCE,
-        (sed(SHALLOW),),
-        {DISTANCE: "T308", SED: "T307"},
-        stack(5.6),
-        surface=(40, 80),
-        constants={RECEPTOR: SHALLOW * 1e6},
-    ),
+    energy_figure("5-24", SHALLOW, {DISTANCE: "T308", SED: "T307"}, 40),
 )

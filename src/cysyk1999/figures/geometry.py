@@ -4,11 +4,17 @@ an indenter.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from pandas import DataFrame, Series
+from scipy.interpolate import LinearNDInterpolator
+from xarray import Dataset
 
 from cysyk1999.measures.errors import PARTS, Companion, Errors, number_errors
 from cysyk1999.measures.quantities import X, Y
@@ -20,9 +26,6 @@ from fingerpad.specimen import quality
 from fingerpad.specimen.element_kinds import KINDS, kind_of
 from fingerpad.specimen.pad import PadMesh, element_edges
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 LAYERS = tuple(style.LAYER_COLOURS)
 """Layers from the outside in, and the bone."""
 NOTE = (
@@ -31,14 +34,14 @@ NOTE = (
 )
 
 
-def stratum_corneum(history: xr.Dataset) -> float:
+def stratum_corneum(history: Dataset) -> float:
     """Thickness (m) of the stratum corneum in a history's scene, which must have a parametric
     outline.
     """
     return scene_of(history).specimen.outline.stratum_corneum_thickness
 
 
-# --- lines -----------------------------------------------------------------------------------------------
+# --- lines ----------------------------------------------------------------------------------------
 
 
 def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
@@ -50,21 +53,19 @@ def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
     if mesh.half:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
     sides = element_edges(mesh.cells, mesh.element)
-    edges = sides[:, :2]
-    owner = np.tile(np.arange(len(mesh.cells)), KINDS[mesh.element].corners)
-    order = np.lexsort(np.sort(edges, axis=1).T)
-    pairs = np.sort(edges, axis=1)[order]
-    same = (pairs[1:] == pairs[:-1]).all(axis=1)
+    owner = np.tile(mesh.region, KINDS[mesh.element].corners)
+    pairs = np.sort(sides[:, :2], axis=1)
+    order = np.lexsort(pairs.T)
+    same = (pairs[order[1:]] == pairs[order[:-1]]).all(axis=1)
     first, second = order[:-1][same], order[1:][same]
-    low, high = mesh.region[owner[first]], mesh.region[owner[second]]
-    alone = np.ones(len(edges), bool)
-    alone[first] = alone[second] = False
+    alone = np.setdiff1d(order, np.append(first, second))
     rim = sorted(loops(_halves(sides[alone])), key=lambda loop: np.ptp(mesh.points[loop, 0]))
     lines = {"skin": rim[-1], "bone": rim[0]}
+    between = np.sort([owner[first], owner[second]], axis=0).T
     for name in ("dermis", "fat"):
         index = mesh.regions.index(name)
-        inner = ((low == index - 1) & (high == index)) | ((high == index - 1) & (low == index))
-        lines[name] = max(loops(_halves(sides[first][inner])), key=len)
+        met = (between == (index - 1, index)).all(axis=1)
+        lines[name] = max(loops(_halves(sides[first[met]])), key=len)
     return lines if as_nodes else {name: mesh.points[line] for name, line in lines.items()}
 
 
@@ -121,7 +122,7 @@ def inward(loop: np.ndarray, distance: float) -> np.ndarray:
     return np.vstack((moved, moved[:1]))
 
 
-def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+def surface_deflection(history: Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Lateral position (m) on the deformed skin and height there over the undeformed skin at that
     place (m).
     """
@@ -131,53 +132,40 @@ def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.
     return moved_x, moved_y - np.interp(moved_x, x[upper], y[upper])
 
 
-# --- mesh ------------------------------------------------------------------------------------------------
+# --- mesh -----------------------------------------------------------------------------------------
 
 
-def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
+def mesh_rows(mesh: PadMesh, corneum: float) -> DataFrame:
     """Outline of every element (one row a point) with its layer, the bone's rim, the nail's side
     that is held, and the quality.
 
     Also the skin and the line `corneum` (m) under it, where the stratum corneum ends.
     """
-    layer, lines = np.array(mesh.regions)[mesh.region], boundaries(mesh)
+    rim = boundaries(mesh)
     polygons = [_outline(mesh, nodes) for nodes in mesh.cells]
-    counts, points = [len(p) for p in polygons], np.concatenate(polygons) * 1e3
-    numbers = {
-        "element": np.repeat(np.arange(len(polygons)), counts),
-        "layer": np.repeat(layer, counts),
-    }
-    elements = (
-        {"series": "element"} | numbers | {X: points[:, 0].round(4), Y: points[:, 1].round(4)}
-    )
-    bone = {
-        "series": "rim",
-        "layer": "bone",
-        X: lines["bone"][:, 0] * 1e3,
-        Y: lines["bone"][:, 1] * 1e3,
-    }
-    skin, inner = densify(lines["skin"], 0.1e-3), inward(densify(lines["skin"], 0.1e-3), corneum)
-    held = (
-        mesh.points[loops(mesh.curves["nail"][:, :2])[0]]
-        if "nail" in mesh.curves
-        else np.empty((0, 2))
-    )
-    edges = [
-        {"series": series, "layer": "stratum corneum", X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3}
-        for series, line in (("skin", skin), ("inner", inner), ("held", held))
-    ]
-    found, apex = quality.quality_of(mesh), np.abs(lines["skin"][:, 0]) < 1e-3
-    top = apex & (lines["skin"][:, 1] > 0)
+    numbers = np.repeat(np.arange(len(polygons)), [len(p) for p in polygons])
+    x, y = 1e3 * np.concatenate(polygons).T
+    elements = {"series": "element", "element": numbers}
+    elements["layer"] = np.array(mesh.regions)[mesh.region][numbers]
+    skin = densify(rim["skin"], 0.1e-3)
+    lines = {"rim": rim["bone"], "skin": skin, "inner": inward(skin, corneum)}
+    if "nail" in mesh.curves:
+        lines["held"] = mesh.points[loops(mesh.curves["nail"][:, :2])[0]]
+    found, shown = quality.quality_of(mesh), rim["skin"]
+    top = shown[(np.abs(shown[:, 0]) < 1e-3) & (shown[:, 1] > 0)]
     values = {
         "nodes (1)": found["nodes"],
         "elements (1)": found["elements"],
-        "node_spacing_under_contact (um)": 1e6
-        * float(np.median(np.hypot(*np.diff(lines["skin"][top], axis=0).T))),
+        "node_spacing_under_contact (um)": 1e6 * np.median(np.hypot(*np.diff(top, axis=0).T)),
         "smallest_edge (um)": found["smallest_edge_m"] * 1e6,
         "worst_scaled_jacobian (1)": found["worst_scaled_jacobian"],
     }
+    parts = [DataFrame(elements | {X: x.round(4), Y: y.round(4)})]
+    for series, line in lines.items():
+        of = {"series": series, "layer": "bone" if series == "rim" else "stratum corneum"}
+        parts.append(DataFrame(of | {X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3}))
     judged = {"series": "quality", "quantity": list(values), "value": list(values.values())}
-    parts = [pd.DataFrame(each) for each in (elements, bone, *edges, judged)]
+    parts.append(DataFrame(judged))
     return pd.concat(parts, ignore_index=True).assign(**dict.fromkeys(PARTS, np.nan))
 
 
@@ -196,90 +184,69 @@ def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.nda
     )
 
 
-def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
+def draw_mesh(ax: Axes, frame: DataFrame, line: float = 0.22) -> None:
     """Elements in the colours of their layers, and the bone."""
-    from matplotlib.collections import PolyCollection
-
-    elements = frame[frame["series"] == "element"]
-    start = np.flatnonzero(np.diff(elements["element"].to_numpy(), prepend=-1))
-    polygons = np.split(elements[[X, Y]].to_numpy(), start[1:])
-    colours = [style.LAYER_COLOURS[layer] for layer in elements["layer"].to_numpy()[start]]
-    rim = frame[frame["series"] == "rim"]
-    ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
+    lines = {name: rows[[X, Y]].to_numpy() for name, rows in frame.groupby("series")}
+    layers = frame.dropna(subset="element").groupby("element")["layer"].first()
+    start = np.flatnonzero(np.diff(frame["element"].dropna()))
+    polygons = np.split(lines["element"], start + 1)
+    colours = [style.LAYER_COLOURS[layer] for layer in layers]
+    ax.fill(*lines["rim"].T, facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="none"))
-    draw_corneum(
-        ax, *(frame.loc[frame["series"] == name, [X, Y]].to_numpy() for name in ("skin", "inner"))
-    )
-    ax.add_collection(
-        PolyCollection(polygons, facecolors="none", edgecolors="0.25", linewidths=line)
-    )
-    held = frame[frame["series"] == "held"]
-    if len(held):
-        ax.plot(held[X], held[Y], color=style.INK, lw=2.4, solid_capstyle="butt")
+    draw_corneum(ax, lines["skin"], lines["inner"])
+    edges = {"facecolors": "none", "edgecolors": "0.25", "linewidths": line}
+    ax.add_collection(PolyCollection(polygons, **edges))
+    if "held" in lines:
+        ax.plot(*lines["held"].T, color=style.INK, lw=2.4, solid_capstyle="butt")
 
 
 def draw_corneum(ax: Axes, skin: np.ndarray, inner: np.ndarray) -> None:
     """The stratum corneum: between the skin (n, 2) and the line its thickness below, both closed,
     in mm.
     """
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-
+    colour = style.LAYER_COLOURS["stratum corneum"]
     if len(skin) and len(inner):
-        codes = [[Path.MOVETO, *[Path.LINETO] * (len(line) - 1)] for line in (skin, inner)]
-        ring = Path(np.vstack((skin, inner[::-1])), np.concatenate(codes))
-        ax.add_patch(
-            PathPatch(ring, facecolor=style.LAYER_COLOURS["stratum corneum"], edgecolor="none")
-        )
+        ring = Path.make_compound_path(Path(skin), Path(inner[::-1]))
+        ax.add_patch(PathPatch(ring, facecolor=colour, edgecolor="none"))
 
 
 def layer_patches(layers: tuple[str, ...] = LAYERS) -> list:
     """Entries of a legend of the layers."""
-    from matplotlib.patches import Patch
-
     return [
         Patch(facecolor=style.LAYER_COLOURS[k], edgecolor="0.25", lw=0.4, label=k) for k in layers
     ]
 
 
-def quality_of(frame: pd.DataFrame) -> pd.Series:
+def quality_of(frame: DataFrame) -> Series:
     """Numbers of the mesh by their names, of the rows of `mesh_rows`."""
     return frame.dropna(subset="value").set_index("quantity")["value"]
 
 
-# --- sections --------------------------------------------------------------------------------------------
+# --- sections -------------------------------------------------------------------------------------
 
 
-def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[str, np.ndarray]:
+def section(history: Dataset, depth: float, corneum: bool = False) -> dict[str, np.ndarray]:
     """Layer boundaries (n, 2) in m at the end of a press to `depth` (0: undeformed), and the
     indenter's lower side.
 
     Lines as in `boundaries`, and if asked ``corneum``, the inner side of the stratum corneum:
     material points at its thickness under the skin, moved as the epidermis round them.
     """
-    from scipy.interpolate import LinearNDInterpolator  # here, for it is slow to import
-
     points = history["node_position"].values
     cells, region = history["element_nodes"].values, history["element_region"].values
-    numbered = boundaries(
-        PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True
-    )
-    moved = (
-        history["snapshot_displacement"].values[leg_of(history, depth)]
-        if depth
-        else np.zeros_like(points)
-    )
-    lines = {name: points[nodes] + moved[nodes] for name, nodes in numbered.items()}
+    mesh = PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True)
+    moved = np.zeros_like(points)
+    if depth:
+        moved = history["snapshot_displacement"].values[leg_of(history, depth)]
+    nodes = boundaries(mesh, as_nodes=True)
+    lines = {name: points[line] + moved[line] for name, line in nodes.items()}
     if corneum:
-        inner = inward(densify(points[numbered["skin"]], 0.1e-3), stratum_corneum(history))
-        epidermis = np.unique(cells[region == 0])
-        # in mm: in m its search for triangles takes many times as long
-        motion = (
-            LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3)
-            if depth
-            else 0.0
-        )
-        lines["corneum"] = inner + motion
+        inner = inward(densify(points[nodes["skin"]], 0.1e-3), stratum_corneum(history))
+        lines["corneum"] = inner
+        if depth:  # in mm: in m the search for triangles takes many times as long
+            near = np.unique(cells[region == 0])
+            motion = LinearNDInterpolator(points[near] * 1e3, moved[near])
+            lines["corneum"] = inner + motion(inner * 1e3)
     x = np.linspace(-8.4e-3, 8.4e-3, 1681)
     height = scene_of(history).stimulus.outline(x) + points[:, 1].max() - depth
     lines["indenter"] = np.column_stack((x, height))[np.isfinite(height)]
@@ -288,41 +255,31 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
 
 def section_rows(
     panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], errors: Errors
-) -> pd.DataFrame:
+) -> DataFrame:
     """Some lines of a `section` as rows."""
-    parts = [
-        pd.DataFrame(
-            {
-                "panel": panel,
-                "phase": state,
-                "layer": k,
-                X: lines[k][:, 0] * 1e3,
-                Y: lines[k][:, 1] * 1e3,
-            }
-            | errors.columns
-        )
-        for k in layers
-    ]
+    parts = []
+    for layer in layers:
+        x, y = 1e3 * lines[layer].T
+        of = {"panel": panel, "phase": state, "layer": layer}
+        parts.append(DataFrame(of | {X: x, Y: y} | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
 
-def section_errors(history: xr.Dataset, coarse: Companion | None) -> Errors:
+def section_errors(history: Dataset, coarse: Companion | None) -> Errors:
     """Errors of the vertical displacement of the layers' boundaries under the apex, at the deepest
     press.
     """
 
-    def under_apex(layer: str):
-        def feature(d: xr.Dataset) -> float:
-            before, after = (section(d, z)[layer] for z in (0.0, max(pressed_depths(d))))
-            node = int(np.argmin(np.where(before[:, 1] > 0, abs(before[:, 0]), np.inf)))
-            return float(after[node, 1] - before[node, 1])
+    def sunk(d: Dataset, layer: str) -> float:
+        before, after = (section(d, z)[layer] for z in (0.0, max(pressed_depths(d))))
+        node = int(np.argmin(np.where(before[:, 1] > 0, abs(before[:, 0]), np.inf)))
+        return float(after[node, 1] - before[node, 1])
 
-        return feature
-
-    return number_errors(history, coarse, under_apex("dermis"), under_apex("fat"))
+    layers = [partial(sunk, layer=layer) for layer in ("dermis", "fat")]
+    return number_errors(history, coarse, *layers)
 
 
-def draw_indenter(ax: Axes, rows: pd.DataFrame) -> None:
+def draw_indenter(ax: Axes, rows: DataFrame) -> None:
     """The indenter from its lower side up to where the picture ends."""
     side = rows[rows["layer"] == "indenter"]
     if len(side):

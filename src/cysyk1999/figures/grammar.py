@@ -4,25 +4,28 @@ its picture follow.
 ::
 
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (sed(915e-6),),
-           thesis={TIME: "T189", SED: "T188"}, layout=Panels(4.6, lines=Lines(ends=2.62)))
+           thesis={TIME: "T189", SED: "T188"}, layout=Panels(height=3.0, fill=Lines(ends=2.62)))
 
 A picture is a function of its frame alone, which is published beside it. The frame of most figures
 is read by the quantities themselves (`Data.traces`); `rows` says another way, with the other
-methods of `Data`, and `after` adds what only one figure has. What a layout does not say is done by
-`extra` once its panels are drawn. Matplotlib is imported when something is drawn.
+methods of `Data`, and `after` adds what only one figure has. What a layout does not say a plain
+function does: `fill` in each panel, `extra` once they are drawn, or the whole `Page`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import wraps
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Picture
+from pandas import DataFrame, Series
+from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
 from cysyk1999.measures.errors import (
@@ -30,6 +33,7 @@ from cysyk1999.measures.errors import (
     PARTS,
     Companion,
     Companions,
+    Curve,
     at_output,
     curve_errors,
     instead,
@@ -51,9 +55,8 @@ from cysyk1999.measures.quantities import (
 )
 from cysyk1999.measures.responses import curvature_of
 from cysyk1999.measures.runs import Runs
-from cysyk1999.measures.table import MEASURES
 from cysyk1999.publishing import style
-from cysyk1999.publishing.write import without_round_off
+from cysyk1999.publishing.write import TEXT_COLUMNS, without_round_off
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import read_bands, read_force_depth, read_surface_profiles
 from fingerpad.measures.features import (
@@ -70,12 +73,7 @@ from fingerpad.measures.features import (
 )
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height
 from fingerpad.planning.errors import PROFILE_ORDER
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Picture
-
-    from fingerpad.specimen.pad import PadMesh
+from fingerpad.specimen.pad import PadMesh
 
 Ids = str | Mapping[object, str]
 """Id of an axis's range in the table of the thesis's numbers, or an id for each panel, surface or
@@ -86,7 +84,7 @@ Look = Mapping[str, object]
 HOW = "r.m.s. over the stroke"
 IN_KILO = (P, P_CENTRE, P_PEAK)
 """Quantities in Pa whose axes say kPa."""
-MEASURED: Mapping[str, tuple[str, Callable[..., pd.DataFrame]]] = {
+MEASURED: Mapping[str, tuple[str, Callable[..., DataFrame]]] = {
     "force_depth": ("force_depth/*.csv", read_force_depth),
     "surface_profiles": ("surface_profiles.csv", lambda paths: read_surface_profiles(*paths)),
     "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
@@ -97,7 +95,20 @@ of reference data (one pattern or more), and their reader.
 """
 
 
-# --- data ------------------------------------------------------------------------------------------------
+# --- data -----------------------------------------------------------------------------------------
+
+
+def stacked(parts: Callable[..., Iterable[DataFrame | Mapping]]) -> Callable[..., DataFrame]:
+    """A generator of frames, or of their columns, as a function that returns them below each
+    other; empty ones are left out.
+    """
+
+    @wraps(parts)
+    def whole(*arguments, **options) -> DataFrame:
+        frames = [DataFrame(part) for part in parts(*arguments, **options)]
+        return pd.concat([part for part in frames if len(part)] or frames, ignore_index=True)
+
+    return whole
 
 
 @dataclass(frozen=True)
@@ -109,99 +120,94 @@ class Data:
     histories: Histories
     meshes: Mapping[str, PadMesh]
     coarse: Companions
-    reference: pd.DataFrame
-    measured: pd.DataFrame | None = None
+    reference: DataFrame
+    measured: DataFrame | None = None
 
-    def runs(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset, Companion | None]]:
+    def runs(self, runs: Runs) -> Iterator[tuple[str, Dataset, Companion | None]]:
         """Name, history, and companions if there are any, of every run."""
         for name, scene in runs.scenes.items():
             yield name, self.histories[scene], self.coarse.get(scene)
 
-    def traces(self, runs: Runs, columns: Sequence[Q], checked: Sequence[Q] = ()) -> pd.DataFrame:
+    @stacked
+    def table(
+        self, runs: Runs, read: Callable[[Dataset], Mapping], *curves: Curve
+    ) -> Iterator[Mapping]:
+        """Rows of every run: its name, the columns that ``read(history)`` gives, and the errors of
+        the one of some curves that is furthest off.
+        """
+        for name, history, coarse in self.runs(runs):
+            errors = curve_errors(history, coarse, *curves).columns
+            yield {"source": SIMULATED, runs.column: name} | dict(read(history)) | errors
+
+    def traces(self, runs: Runs, columns: Sequence[Q], checked: Sequence[Q] = ()) -> DataFrame:
         """One row an output: the run's name, the columns, and the errors of what is `checked` (of
         all that count).
         """
-        reads = [q.read for q in checked or columns if q.checked]
-        parts = []
-        for name, history, coarse in self.runs(runs):
-            shown, over = (loaded(history), over_stroke) if runs.stroke else (history, over_time)
-            errors = curve_errors(history, coarse, *map(over, reads))
-            part = {"source": SIMULATED, runs.column: name} | {q: q.read(shown) for q in columns}
-            parts.append(pd.DataFrame(part | errors.columns))
-        return pd.concat(parts, ignore_index=True)
+        over = over_stroke if runs.stroke else over_time
 
-    def profiles(self, runs: Runs, half: bool = False) -> pd.DataFrame:
-        """Pressure over the contact at the shown outputs: at nodes, where they are by then, and
-        between the last and the edge.
+        def read(history: Dataset) -> dict[str, np.ndarray]:
+            shown = loaded(history) if runs.stroke else history
+            return {q: q.read(shown) for q in columns}
+
+        return self.table(runs, read, *(over(q.read) for q in checked or columns if q.checked))
+
+    def strokes(
+        self, runs: Iterable[Runs], columns: Sequence[Q], ends: tuple[float, float]
+    ) -> DataFrame:
+        """The surface between two ends (mm), and the traces of strokes from the first on."""
+        scenes = {name: scene for each in runs for name, scene in each.scenes.items()}
+        scene = scenes.get("10 mm/s") or next(iter(scenes.values()))
+        rows = pd.concat([self.traces(each, columns) for each in runs])
+        rows = rows[rows[DISTANCE] >= ends[0] - 1e-9]
+        return pd.concat([self.surface(scene, *ends), rows], ignore_index=True)
+
+    @stacked
+    def profiles(self, runs: Runs, over: Q = X, half: bool = False) -> Iterator[DataFrame]:
+        """Pressure over the contact at the shown outputs, against place or displacement: at nodes,
+        where they are by then, and between the last and the edge.
         """
-        parts = []
         for name, history, coarse in self.runs(runs):
-            sunk = -history["skin_displacement_y"].values
             for index, phase in phase_indices(history):
-                x, p = edged_profile(history, index)
-                errors = curve_errors(
-                    history,
-                    coarse,
-                    at_output(float(history["time"][index]), edged_profile, PROFILE_ORDER),
-                )
+                time = float(history["time"][index])
+                curve = at_output(time, edged_profile, PROFILE_ORDER)
+                errors = curve_errors(history, coarse, curve)
                 near = in_contact(history, index)
-                down = (
-                    np.interp(x, profile(history, index)[0][near], sunk[index][near])
-                    if near.any()
-                    else 0 * x
-                )
-                keep = (x >= 0) & near.any() if half else np.full(len(x), near.any())
-                part = {
-                    "phase": phase,
-                    TIME: history["time"].values[index],
-                    X: x[keep] * 1e3,
-                    DOWN: down[keep] * 1e3,
-                }
-                parts.append(pd.DataFrame(part | {P: p[keep], **errors.columns, runs.column: name}))
-        return pd.concat(parts, ignore_index=True)
+                if not near.any():
+                    continue
+                x, p = edged_profile(history, index)
+                places = 1e3 * x
+                if over == DOWN:
+                    sunk = -1e3 * history["skin_displacement_y"].values[index]
+                    places = np.interp(x, profile(history, index)[0][near], sunk[near])
+                rows = {"phase": phase, TIME: time, over: places, P: p}
+                rows = DataFrame(rows | errors.columns | {runs.column: name})
+                yield rows[x >= 0] if half else rows
 
-    def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
-        """One row a surface: curvature, numbers, the largest of their errors, relative to the
-        largest of all or to its `own`.
-        """
-        histories = [history for _, history, _ in self.runs(runs)]
-
-        def read(history: xr.Dataset) -> pd.Series:
-            return pd.Series({q: each(history) for q, each in columns.items()}, dtype=float)
-
-        rows, sparse = (
-            pd.DataFrame(map(read, histories)),
-            pd.DataFrame([read(thinned(history)) for history in histories]),
-        )
-        others = [instead(history, companion, read) for _, history, companion in self.runs(runs)]
-        mesh, left, both = map(pd.DataFrame, zip(*others, strict=True))
-        sizes = rows.abs() if own else rows.abs().max()
-        errors = largest_of([(rows, mesh), (left, both), (rows, sparse)], sizes)
-        rows.insert(0, CURVATURE, [curvature_of(history) for history in histories])
-        rows.insert(0, runs.column, list(runs))
-        return pd.concat([rows, errors], axis=1)
-
-    def convexities(self, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
-        """One row a run and convexity: its name and curvature, measures by their names, and the
-        largest of their errors.
+    def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> DataFrame:
+        """One row a run, of strokes one a convexity: curvature, numbers, the largest of their
+        errors, relative to the largest of all or to its `own`.
         """
 
-        def read(history: xr.Dataset) -> pd.DataFrame:
-            return pd.DataFrame({q: MEASURES[m](history) for q, m in columns.items()}, dtype=float)
+        def read(history: Dataset) -> DataFrame:
+            return DataFrame({q: Series(each(history), dtype=float) for q, each in columns.items()})
 
         parts = []
-        for name, history, coarse in self.runs(runs):
-            fine, others = read(history), (read(thinned(history)), *instead(history, coarse, read))
-            sparse, mesh, left, both = (each.reindex(fine.index) for each in others)
-            errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], fine.abs())
-            exact = [convexities(history)[label].curvature for label in fine.index]
-            rows = pd.concat([fine, errors], axis=1).rename_axis("convexity").reset_index()
-            rows.insert(1, CURVATURE, exact)
-            rows.insert(0, runs.column, name)
-            parts.append(rows)
-        return pd.concat(parts, ignore_index=True)
+        for _, history, coarse in self.runs(runs):
+            fine = read(history)
+            others = (read(thinned(history)), *instead(history, coarse, read))
+            arcs_at = {label: arc.curvature for label, arc in convexities(history).items()}
+            at = Series(arcs_at if runs.stroke else curvature_of(history), name=CURVATURE)
+            parts.append([fine, *(each.reindex(fine.index) for each in (at, *others))])
+        named = {"keys": list(runs), "names": [runs.column, "convexity"]}
+        fine, at, sparse, mesh, left, both = (
+            pd.concat(each, **named) for each in zip(*parts, strict=True)
+        )
+        sizes = fine.abs() if own else fine.abs().max()
+        errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], sizes)
+        rows = pd.concat([at, fine, errors], axis=1).reset_index()
+        return rows if runs.stroke else rows.drop(columns="convexity")
 
-    def surface(self, scene: str, low: float, high: float) -> pd.DataFrame:
+    def surface(self, scene: str, low: float, high: float) -> DataFrame:
         """Rows of a stroked surface's shape from `low` to `high` (mm along it): height, and
         curvature (0 on the flats).
         """
@@ -214,14 +220,14 @@ class Data:
             curvature[(x >= arc.start * 1e3) & (x < arc.end * 1e3)] = arc.curvature
         heights = profile_and_height(history)[0].outline(x * 1e-3) * 1e3
         part = {"source": f"{SIMULATED}: shape of the stimulus", "panel": axs.SURFACE, DISTANCE: x}
-        return pd.DataFrame(part | {HEIGHT: heights, CURVATURE: curvature})
+        return DataFrame(part | {HEIGHT: heights, CURVATURE: curvature})
 
     def bands(
         self,
         column: str,
         measures: Mapping[str, Mapping[str, object]],
         read: Callable[[float], float] = float,
-    ) -> pd.DataFrame:
+    ) -> DataFrame:
         """How far other pads differ that the thesis's figures do not rule out: two rows (its ends)
         a surface and measure.
 
@@ -231,15 +237,13 @@ class Data:
         rows = []
         for band in () if self.measured is None else self.measured.itertuples():
             if band.measure in measures:
-                of = {
-                    "surface": band.surface,
-                    "source": f"{axs.OTHER_PADS} that the thesis's figures do not tell apart: {band.pads:.0f})",
-                    **measures[band.measure],
-                }
-                rows += [of | {column: end} for end in sorted((read(band.low), read(band.high)))]
-        return pd.DataFrame(rows)
+                words = f"that the thesis's figures do not tell apart: {band.pads:.0f})"
+                of = {"surface": band.surface, "source": f"{axs.OTHER_PADS} {words}"}
+                ends = sorted((read(band.low), read(band.high)))
+                rows += [of | measures[band.measure] | {column: end} for end in ends]
+        return DataFrame(rows)
 
-    def axis(self, column: str, ids: Ids, key: str) -> pd.DataFrame:
+    def axis(self, column: str, ids: Ids, key: str) -> DataFrame:
         """Rows that mark a thesis axis range: two (its ends) for each id that the reference has,
         `source` saying so.
         """
@@ -248,16 +252,14 @@ class Data:
             if id_ not in self.reference.index:
                 continue
             entry = self.reference.loc[id_]
-            source = (
-                "thesis axis range "
-                f"({id_}{', reading uncertain' if entry['kind'] == 'garbled' else ''})"
-            )
+            doubt = ", reading uncertain" if entry["kind"] == "garbled" else ""
             of = {} if panel is None else {key: panel}
-            rows += [{**of, "source": source, column: entry[end]} for end in ("low", "high")]
-        return pd.DataFrame(rows)
+            of["source"] = f"thesis axis range ({id_}{doubt})"
+            rows += [of | {column: entry[end]} for end in ("low", "high")]
+        return DataFrame(rows)
 
 
-def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+def edged_profile(history: Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Positions (m) of the nodes of a contact that is its own mirror image, and of its edges, and
     the pressures (Pa) there.
 
@@ -278,7 +280,7 @@ def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
     return np.append(-right[:0:-1], right), np.append(pressure[:0:-1], pressure)
 
 
-def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+def upper_profile(history: Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Deformed lateral position (m) and pressure (Pa) of the skin nodes of the upper side at one
     output.
     """
@@ -287,49 +289,23 @@ def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
 
 
 def largest_of(
-    pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.DataFrame | pd.Series
-) -> pd.DataFrame:
+    pairs: Sequence[tuple[DataFrame, DataFrame]], sizes: DataFrame | Series
+) -> DataFrame:
     """The errors (columns `PARTS`, %) of each row's number that is furthest off, relative to sizes;
     none of what is zero.
 
     pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
     """
     parts = [
-        100 * left * (a - b).abs() / sizes.replace(0, np.nan)
+        (100 * left * (a - b).abs() / sizes.replace(0, np.nan)).to_numpy()
         for left, (a, b) in zip(LEFT, pairs, strict=True)
     ]
-    worst = sum(part.fillna(0) for part in parts).to_numpy().argmax(axis=1)
-    rows = np.arange(len(worst))
-    return pd.DataFrame(
-        {name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)},
-        parts[0].index,
-    )
+    worst = np.nansum(parts, axis=0).argmax(axis=1)
+    found = [part[np.arange(len(worst)), worst] for part in parts]
+    return DataFrame(dict(zip(PARTS, found, strict=True)), pairs[0][0].index)
 
 
-def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
-    """Frames below each other, the first simulated where it says nothing else; empty ones are left
-    out.
-    """
-    if "source" not in rows:
-        rows.insert(0, "source", SIMULATED)
-    return pd.concat([rows, *(part for part in others if len(part))], ignore_index=True)
-
-
-def stacked(parts: Mapping[object, pd.DataFrame], column: str = "panel") -> pd.DataFrame:
-    """Frames below each other, each with its name in a first column."""
-    return pd.concat(dict(parts), names=[column]).reset_index(0).reset_index(drop=True)
-
-
-# --- figures ---------------------------------------------------------------------------------------------
-
-
-class Layout(Protocol):
-    """How panels are placed and filled. Heights in inch; `header` leaves room under the title."""
-
-    height: float
-    header: float
-
-    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> None: ...
+# --- figures --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -347,57 +323,44 @@ class Figure:
     thesis
         Column -> id of the thesis's axis range, or ids by the values of the column `key`.
     layout
-        Its picture.
+        Its picture: :class:`Panels`, or a :class:`Page` that a function draws.
+    key
+        Column that tells which range of the thesis belongs to which rows.
     rows
         ``rows(data)``: the rows before those of the axis ranges, where they are not the traces of
         `y` over `x`.
     after
         ``after(data)``: rows after them.
-    keep, checked, constants
-        Of the traces: columns before `x`; quantities whose error counts in place of those of `y`;
-        columns with one value.
     surface
         Ends (mm) of the stroked surface that is drawn above.
     measured
         Name of the measured data (a key of `MEASURED`) shown beside; empty: none.
-    meshes
-        Whether it is made from the meshes of its runs too.
     joined
         Column that names the lines which points are joined to, if they are: the error stated is the
         largest of a line.
     how, note
         How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's
         statement.
-    remarks
-        What a caption says beyond the picture.
     width
         Inch: of a page, or of a column for a single curve.
-    extra
-        ``extra(panels, frame)``: what the layout does not say, on the panels by their names.
     """
 
     number: str
     title: str
     runs: Runs | tuple[Runs, ...]
-    x: Q | None = None
-    y: tuple[Q, ...] = ()
-    thesis: Mapping[str, Ids] = field(default_factory=dict)
-    layout: Layout = None
+    x: Q
+    y: tuple[Q, ...]
+    thesis: Mapping[str, Ids]
+    layout: Panels | Page
     key: str = "surface"
-    rows: Callable[[Data], pd.DataFrame] | None = None
-    after: Callable[[Data], pd.DataFrame] | None = None
-    keep: tuple[Q, ...] = ()
-    checked: tuple[Q, ...] = ()
-    constants: Mapping[str, float] = field(default_factory=dict)
+    rows: Callable[[Data], DataFrame] | None = None
+    after: Callable[[Data], DataFrame] = lambda data: DataFrame()
     surface: tuple[float, float] | None = None
     measured: str = ""
-    meshes: bool = False
     joined: str = ""
-    how: str | None = None
-    remarks: tuple[str, ...] = ()
-    note: Callable[[pd.DataFrame], Sequence[str]] | None = None
+    how: str = ""
+    note: Callable[[DataFrame], Sequence[str]] | None = None
     width: float = style.PAGE_WIDTH
-    extra: Callable[[Mapping[object, Axes], pd.DataFrame], None] | None = None
 
     @property
     def all_runs(self) -> tuple[Runs, ...]:
@@ -407,135 +370,125 @@ class Figure:
     @property
     def needs(self) -> tuple[str, ...]:
         """Names of the scenes whose histories the frame is made from."""
-        return tuple(
-            dict.fromkeys(scene for runs in self.all_runs for scene in runs.scenes.values())
-        )
+        return tuple(dict.fromkeys(s for runs in self.all_runs for s in runs.scenes.values()))
 
     @property
     def read_companions(self) -> tuple[str, ...]:
         """Names of the scenes whose coarse companions the frame reads."""
-        return tuple(
-            dict.fromkeys(scene for runs in self.all_runs for scene in runs.companion_scenes)
-        )
+        return tuple(dict.fromkeys(s for runs in self.all_runs for s in runs.companion_scenes))
 
-    def measurements(self, folder: str | PathLike) -> tuple[pd.DataFrame, ...]:
+    def measurements(self, folder: str | PathLike) -> tuple[DataFrame, ...]:
         """The measured data in `folder` that `frame` takes after its four arguments: one table or
         none.
         """
-        return (MEASURED[self.measured][1](self.measured_files(folder)),) if self.measured else ()
-
-    def measured_files(self, folder: str | PathLike) -> list[Path]:
-        """The files in `folder` that the measured data are read from."""
-        patterns = MEASURED[self.measured][0].split() if self.measured else []
-        return [path for pattern in patterns for path in sorted(Path(folder).glob(pattern))]
+        if not self.measured:
+            return ()
+        patterns, read = MEASURED[self.measured]
+        return (read([p for each in patterns.split() for p in sorted(Path(folder).glob(each))]),)
 
     def frame(
         self,
         histories: Histories,
         meshes: Mapping[str, PadMesh],
         coarse: Companions,
-        reference: pd.DataFrame,
-        measured: pd.DataFrame | None = None,
-    ) -> pd.DataFrame:
+        reference: DataFrame,
+        measured: DataFrame | None = None,
+    ) -> DataFrame:
         """The tidy data frame, units in the column names; simulated rows first, a `source` in every
-        row.
+        row; words in the first columns, errors in the last.
 
         `coarse` holds the companions on coarser meshes (may be empty: errors of mesh and steps are
         then NaN), `reference` is the table of `read_reference` (may be empty: thesis ranges are
         then left out), `measured` a table of `measurements`.
         """
         data = Data(histories, meshes, coarse, reference, measured)
-        rows = self.rows(data) if self.rows else self._traces(data)
+        rows = self.rows(data) if self.rows else self.traces(data)
         if "source" not in rows:
-            rows.insert(0, "source", SIMULATED)
+            rows = rows.assign(source=SIMULATED)
         marks = [data.axis(column, ids, self.key) for column, ids in self.thesis.items()]
-        if self.after:
-            marks.append(self.after(data))
-        return without_round_off(
-            pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True)
-        )
+        marks = [part for part in (*marks, self.after(data)) if len(part)]
+        frame = without_round_off(pd.concat([rows, *marks], ignore_index=True))
+        words = [column for column in TEXT_COLUMNS if column in frame]
+        numbers = [column for column in frame if column not in (*words, *PARTS)]
+        return frame[[*words, *numbers, *PARTS]]
 
-    def _traces(self, data: Data) -> pd.DataFrame:
-        columns = (*self.keep, self.x, *self.y)
-        rows = pd.concat(
-            [data.traces(runs, columns, self.checked) for runs in self.all_runs], ignore_index=True
-        )
-        rows = rows.assign(**self.constants)
-        if self.surface is None:
-            return rows
-        scenes = {name: scene for runs in self.all_runs for name, scene in runs.scenes.items()}
-        above = data.surface(scenes.get("10 mm/s") or next(iter(scenes.values())), *self.surface)
-        return pd.concat([above, rows[rows[DISTANCE] >= self.surface[0] - 1e-9]], ignore_index=True)
+    def traces(self, data: Data) -> DataFrame:
+        """The traces of `y` over `x`, below the surface if that is drawn."""
+        columns = (self.x, *self.y)
+        if self.surface:
+            return data.strokes(self.all_runs, columns, self.surface)
+        parts = [data.traces(runs, columns) for runs in self.all_runs]
+        return pd.concat(parts, ignore_index=True)
 
-    def draw(self, frame: pd.DataFrame) -> Picture:
+    def draw(self, frame: DataFrame) -> Picture:
         """The picture, a function of the frame alone."""
-        with style.theme():
-            how = self.how if self.how is not None else HOW if self.surface else ""
-            wide = style.note_width(self.width)
+        page, wide = self.layout, style.note_width(self.width)
+        if self.note:
+            lines = style.wrapped(self.note(frame), wide)
+        else:
             through = [(self.joined, q) for q in self.y if self.joined]
-            lines = (
-                style.wrapped(self.note(frame), wide)
-                if self.note
-                else axs.footnote(frame, how, wide, through)
-            )
-            lines += axs.statement(frame, wide)
+            how = self.how or (HOW if self.surface else "")
+            lines = axs.footnote(frame, how, wide, through)
+        lines += axs.statement(frame, wide)
+        with style.theme():
             fig = style.sheet(
-                self.title,
-                lines,
-                self.layout.height,
-                self.number,
-                self.layout.header,
-                width=self.width,
+                self.title, lines, page.height, self.number, page.header, width=self.width
             )
-            panels = self.layout.draw(fig, frame, self)
-            if self.extra:
-                self.extra(panels, frame)
+            page.draw(fig, frame, self)
             return style.finished(fig)
 
 
-# --- layouts ---------------------------------------------------------------------------------------------
+# --- layouts --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
 
-    `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what
-    a legend says; `ends`: where (x) surfaces are named directly, under `heading`; `recorded`: what
-    points look like that were measured; `bars`: they are points, whose errors are drawn as bars,
-    not as bands; `hidden`: quantity -> that which must be above 0 where it is shown.
+    Attributes
+    ----------
+    looks
+        Of names (in their order) and quantities: over those of `axes.look`.
+    names
+        What a legend says.
+    ends
+        Place (x) where surfaces are named directly.
+    recorded
+        What points look like that were measured.
+    bars
+        Whether they are points, whose errors are drawn as bars, not as bands.
+    hidden
+        Quantity -> that which must be above 0 where it is shown.
     """
 
     by: str = ""
     looks: Mapping[str, Look] = field(default_factory=dict)
     names: Mapping[str, str] = field(default_factory=dict)
     ends: float | None = None
-    heading: str = "curvature (1/m)"
     recorded: Look = field(default_factory=dict)
     bars: bool = False
     hidden: Mapping[str, str] = field(default_factory=dict)
 
-    def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
-        own, ends = rows[is_simulated(rows)], {}
+    def __call__(self, ax: Axes, rows: DataFrame, spec: Figure) -> None:
+        """Draw the curves of some rows of a figure's frame."""
+        own, ends, order = rows[is_simulated(rows)], {}, list(self.looks)
         curves = own.groupby(self.by or spec.all_runs[0].column, sort=False)
-        for name, curve in sorted(curves, key=lambda item: [*self.looks, item[0]].index(item[0])):
+        for name, curve in sorted(curves, key=lambda item: [*order, item[0]].index(item[0])):
             for q in spec.y:
-                label = self.names.get(q) or self.names.get(
-                    name, str(name) if len(spec.y) == 1 else q
-                )
+                told = self.names.get(name, str(name) if len(spec.y) == 1 else q)
                 look = axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {})
-                y = curve[q].where(curve[self.hidden[q]] > 0) if q in self.hidden else curve[q]
-                shown = curve.assign(**{q: y} | ({} if q.checked else dict.fromkeys(PARTS, np.nan)))
+                shown = curve if q.checked else curve.assign(**dict.fromkeys(PARTS, np.nan))
+                if q in self.hidden:
+                    shown = shown.assign(**{q: shown[q].where(shown[self.hidden[q]] > 0)})
+                label = self.names.get(q) or told
                 axs.curve(ax, shown, spec.x, q, label=label, points=self.bars, **look)
             ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
-        if self.recorded and len(points := rows[rows["source"].str.startswith("measured")]):
-            ax.plot(
-                points[spec.x],
-                points[spec.y[0]],
-                **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded,
-            )
+        points = rows[rows["source"].str.startswith("measured")]
+        if self.recorded and len(points):
+            look = {"ls": "none", "marker": "x", "label": "recorded"} | self.recorded
+            ax.plot(points[spec.x], points[spec.y[0]], **look)
         if self.ends is not None:
-            style.label_ends(ax, ends, self.ends, self.heading)
+            style.label_ends(ax, ends, self.ends, "curvature (1/m)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -547,14 +500,23 @@ class Phases:
     colour: str = ""
     order: Sequence[str] = PHASES
 
-    def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    def __call__(self, ax: Axes, rows: DataFrame, spec: Figure) -> None:
+        """Draw the curves of some rows of a figure's frame."""
         own = rows[is_simulated(rows)]
-        times = [TIME] if TIME in own else []
-        for (phase, *_), curve in sorted(
-            own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])
-        ):
+        curves = own.groupby(["phase", *([TIME] if TIME in own else [])])
+        for (phase, *_), curve in sorted(curves, key=lambda item: self.order.index(item[0][0])):
             colour = axs.look(self.colour or curve["surface"].iloc[0])
             axs.curve(ax, curve, spec.x, spec.y[0], **colour | axs.PHASE_LINES[phase])
+
+
+def above(ax: Axes, name: object) -> None:
+    """A panel's name, where it is one, above it."""
+    ax.set_title(axs.surface_name(name) if name in style.COLOURS else str(name))
+
+
+def inside(ax: Axes, name: object) -> None:
+    """A velocity in the upper left of its panel."""
+    ax.text(0.008, 0.97, f"v = {name}", transform=ax.transAxes, va="top")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -564,145 +526,104 @@ class Panels:
 
     Attributes
     ----------
+    height, header
+        Of the page, and of the room left under its title (inch).
     by, names, shape
-        Column, its values in order, rows and columns of the grid.
-    pairs
-        In place of values: quantities across and up, a panel each, of all rows.
-    titles, corner
-        ``titles(name)`` above a panel, ``corner(name)`` in its upper left.
+        Column, its values in order, rows and columns of the grid. Without `by` the names may be
+        quantities across and up, a panel each, of all rows.
+    title
+        ``title(ax, name)``: names a panel.
     fill
-        What is drawn in each: `Lines`, `Phases` or another ``fill(panel, rows, spec)``.
+        What is drawn in each: `Lines`, `Phases` or another ``fill(ax, rows, spec)``.
     limit
-        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`;
-        "wide": or where the data do.
+        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`.
     marked
         Name of the one panel whose bracket says what it is; None: all.
     set, legend
         Arguments of ``Axes.set`` for every panel; of ``Axes.legend`` for the last one.
-    xlabel, ylabel, each
-        Words on the axes in place of those of x and y; on the middle panels of the edges, or on all
-        panels there if `each`.
+    each
+        Whether all panels at the edges have words on their axes, or only the middle ones.
     share
         Whether panels in a grid share their axes, in matplotlib's words: ``sharex``, ``sharey``.
+    extra
+        ``extra(panels, frame)``: what the rest does not say, on the panels by their names.
     """
 
     height: float
     header: float = 0.0
     by: str = ""
-    names: Sequence[object] = ("",)
-    pairs: Sequence[tuple[Q, Q]] = ()
+    names: Sequence = ("",)
     shape: tuple[int, int] = (1, 1)
-    titles: Callable[[object], str] | None = None
-    corner: Callable[[object], str] | None = None
-    fill: Callable[[Axes, pd.DataFrame, Figure], None] = Lines()
+    title: Callable[[Axes, object], None] | None = None
+    fill: Callable[[Axes, DataFrame, Figure], None] = Lines()
     limit: str = "xy"
     alike: bool = False
     marked: object = None
     set: Mapping[str, object] = field(default_factory=dict)
     legend: Mapping[str, object] | None = None
-    xlabel: str = ""
-    ylabel: str = ""
     each: bool = False
     share: Mapping[str, object] = field(default_factory=dict)
+    extra: Callable[[Mapping[object, Axes], DataFrame], None] | None = None
 
-    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
-        """Draw the panels; returned by name, the surface above under ``surface``."""
-        if self.pairs:
-            return self._draw_pairs(fig, frame, spec)
-        (panels, grid), tops = self._place(fig, frame, spec), []
-        for name, ax in panels.items():
+    def draw(self, fig: Picture, frame: DataFrame, spec: Figure) -> None:
+        """Draw the panels on a page."""
+        high, wide = self.shape
+        if spec.surface:
+            high = len(self.names)
+            axes = axs.below_surface(fig, frame, high, along=spec.x == DISTANCE)
+        else:
+            axes = fig.subplots(high, wide, squeeze=False, **self.share).ravel()
+        panels, tops = dict(zip(self.names, axes, strict=True)), []
+        for k, (name, ax) in enumerate(panels.items()):
+            pair, (row, column) = isinstance(name, tuple), divmod(k, wide)
+            of = replace(spec, x=name[0], y=name[1:]) if pair else spec
             rows = axs.rows_of(frame, self.by, name) if self.by else frame
-            within = axs.together(frame if self.alike else rows, spec.y)
-            text = self.marked is None or name == self.marked
-            if self.limit == "wide":
-                axs.wide_limits(ax, within, spec.x, spec.y[0])
-            elif self.limit == "xy":
-                axs.limit_axes(ax, within, spec.x, spec.y[0], text)
-            elif self.limit:
-                axs.limit_axis(
-                    ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text
-                )
-            self.fill(ax, rows, spec)
+            if pair or (row == high - 1 and (self.each or column == wide // 2)):
+                ax.set_xlabel(of.x.label)
+            if pair or (column == 0 and (self.each or row == high // 2)):
+                ax.set_ylabel(of.y[0].label)
+            limited = {"x": of.x, "y": of.y[0]} if of.y else {"x": of.x}
+            within = axs.together(frame if self.alike else rows, of.y)
+            text = self.marked is None or self.marked in (name, of.y[0])
+            axs.limit_axes(ax, within, text=text, **{k: limited[k] for k in self.limit})
+            self.fill(ax, rows, of)
             ax.set(**self.set)
             tops.append(ax.get_ylim()[1])
-            if self.titles:
-                ax.set_title(self.titles(name))
-            if self.corner:
-                ax.text(0.008, 0.97, self.corner(name), transform=ax.transAxes, va="top")
-            for axis, q in ((ax.xaxis, spec.x), (ax.yaxis, spec.y[0])):
+            if self.title:
+                self.title(ax, name)
+            for axis, q in ((ax.xaxis, of.x), (ax.yaxis, of.y[0])):
                 if q in IN_KILO:
                     style.in_kilo(axis)
-        if self.share.get("sharey"):  # the last limits that were set are those of all
-            grid[0, 0].set_ylim(top=max(tops))
-        high, wide = grid.shape
-        for ax in grid[-1] if self.each else grid[-1, wide // 2 : wide // 2 + 1]:
-            ax.set_xlabel(_in_kilo(self.xlabel or spec.x.label, spec.x))
-        for ax in grid[:, 0] if self.each else grid[high // 2 : high // 2 + 1, 0]:
-            ax.set_ylabel(_in_kilo(self.ylabel or spec.y[0].label, spec.y[0]))
-        if self.legend is not None:
-            grid[-1, -1].legend(**self.legend)
-        return panels
-
-    def _draw_pairs(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
-        grid = fig.subplots(*self.shape, **self.share).ravel()
-        for ax, (x, y) in zip(grid, self.pairs, strict=False):
-            axs.limit_axes(ax, frame, x, y, self.marked in (None, y))
-            ax.set(xlabel=x.label, ylabel=y.label, **self.set)
-            self.fill(ax, frame, replace(spec, x=x, y=(y,)))
-            if y in IN_KILO:
-                style.in_kilo(ax.yaxis)
-            if self.share:
+            if pair and self.share:
                 ax.label_outer()
+        if self.share.get("sharey"):  # the last limits that were set are those of all
+            axes[0].set_ylim(top=max(tops))
         if self.legend is not None:
-            grid[-1].legend(**self.legend)
-        return dict(zip(self.pairs, grid, strict=True))
-
-    def _place(
-        self, fig: Picture, frame: pd.DataFrame, spec: Figure
-    ) -> tuple[dict[object, Axes], np.ndarray]:
-        if spec.surface is None:
-            grid = fig.subplots(*self.shape, squeeze=False, **self.share)
-            return dict(zip(self.names, grid.ravel(), strict=False)), grid
-        below = axs.below_surface(fig, frame, len(self.names), along=spec.x == DISTANCE)
-        return dict(zip(self.names, below, strict=True)), np.array(below)[:, None]
+            axes[-1].legend(**self.legend)
+        if self.extra:
+            self.extra(panels, frame)
 
 
-def _in_kilo(words: str, q: Q) -> str:
-    return words.replace("(Pa)", "(kPa)") if q in IN_KILO else words
-
-
-@dataclass(frozen=True, kw_only=True)
-class Own:
-    """A picture of its own: ``paint(fig, frame, spec)`` draws it on the empty page."""
+@dataclass(frozen=True)
+class Page:
+    """A picture of its own: ``draw(fig, frame, spec)`` draws it on the empty page."""
 
     height: float
+    draw: Callable[[Picture, DataFrame, Figure], None]
     header: float = 0.0
-    paint: Callable[[Picture, pd.DataFrame, Figure], None]
-
-    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
-        self.paint(fig, frame, spec)
-        return {}
 
 
-def nine(names: Sequence[object], height: float, **options) -> Panels:
+def nine(names: Sequence, height: float, **options) -> Panels:
     """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom
     right.
     """
-    options = {"by": "surface", "titles": axs.surface_name} | options
+    options = {"by": "surface", "title": above} | options
     return Panels(height=height, names=names, shape=(3, 3), **options)
 
 
 def stack(height: float, **options) -> Panels:
     """A panel a velocity below the surface."""
-    options = {
-        "by": "series",
-        "corner": lambda series: f"v = {series}",
-        "alike": True,
-        "marked": "10 mm/s",
-    } | options
-    names = tuple(f"{v} mm/s" for v in style.SPEED_COLOURS)
-    return Panels(
-        height=height,
-        names=names,
-        **{"fill": Lines(looks=dict.fromkeys(names, {"ls": "-"}))} | options,
-    )
+    names = tuple(f"{v} mm/s" for v in style.MEANINGS["speed (mm/s)"])
+    solid = Lines(looks=dict.fromkeys(names, {"ls": "-"}))
+    alike = {"by": "series", "fill": solid, "title": inside, "alike": True, "marked": "10 mm/s"}
+    return Panels(height=height, names=names, **alike | options)

@@ -14,11 +14,13 @@ from markdown_it import MarkdownIt
 from fingerpad.files import write_text
 
 STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff; margin: 1.2rem 1.6rem; }
+body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff;
+  margin: 1.2rem 1.6rem; }
 h1 { font-size: 1.25rem; } h2 { font-size: 1.05rem; }
 img { display: block; max-width: 100%; max-height: 82vh; margin: 0.6rem 0; }
 table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.7rem 0.15rem 0; border-bottom: 1px solid #ddd; }
+th, td { text-align: left; vertical-align: top; padding: 0.15rem 0.7rem 0.15rem 0;
+  border-bottom: 1px solid #ddd; }
 div.table { overflow-x: auto; }
 footer { margin-top: 1rem; color: #555; font-size: 0.85rem; }
 """
@@ -35,17 +37,13 @@ def picture(path: Path, alt: str) -> str:
     """A picture, still or moving, as part of the page itself."""
     kind = mimetypes.guess_type(path.name)[0] or "image/png"
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    if kind.startswith("video/"):
-        return (
-            f'<video controls loop src="data:{kind};base64,{data}" style="max-width: 100%"></video>'
-        )
     return f'<img alt="{html.escape(alt)}" src="data:{kind};base64,{data}">'
 
 
 def of_markdown(text: str) -> str:
     """Markdown with its tables as HTML; tables wider than the page scroll by themselves."""
-    made = MarkdownIt("commonmark").enable("table").render(text)
-    return made.replace("<table>", '<div class="table"><table>').replace(
+    text = MarkdownIt("commonmark").enable("table").render(text)
+    return text.replace("<table>", '<div class="table"><table>').replace(
         "</table>", "</table></div>"
     )
 

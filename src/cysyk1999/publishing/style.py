@@ -6,26 +6,28 @@ at 7 pt, DejaVu Sans, which matplotlib ships. Colours mean one thing each (`MEAN
 are one sequence from dark blue to ochre that is even in the logarithm and keeps its order in grey
 and for colour-blind readers; what has no order wears the colours of Okabe and Ito (2008), darkened
 where they are too pale for a line, and a line style and a marker besides. Text is never coloured.
-Matplotlib is imported when something is drawn: what only lists or describes pictures need not load
-it.
 """
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from functools import wraps
-from typing import TYPE_CHECKING
+from string import ascii_lowercase
 
+import matplotlib as mpl
 import numpy as np
-import pandas as pd
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+from matplotlib.style import context
+from matplotlib.ticker import ScalarFormatter
+from pandas import DataFrame
+from scipy.optimize import isotonic_regression
 
 INCH = 25.4  # mm
 PAGE_WIDTH, COLUMN_WIDTH, TALLEST = 183 / INCH, 89 / INCH, 170 / INCH  # inch, of a journal's page
@@ -90,7 +92,7 @@ LINES = (SOLID, DASHED, DOTTED, DASH_DOT, LONG, (0, (2.5, 1)))
 MARKERS = "os^Dv<>P"
 Look = Mapping[str, object]
 
-# --- what colours mean -------------------------------------------------------------------------------------
+# --- what colours mean ----------------------------------------------------------------------------
 
 COLOURS = {
     "flat": "#01287b",
@@ -173,9 +175,6 @@ MEANINGS: Mapping[str, Mapping[str, Look]] = {
 colour-blind ones too.
 """
 
-SPEED_COLOURS = {name: look["color"] for name, look in MEANINGS["speed (mm/s)"].items()}
-SPEED_LINES = {name: look["ls"] for name, look in MEANINGS["speed (mm/s)"].items()}
-SHADES = CATEGORIES
 LAYER_COLOURS = {
     "stratum corneum": "#8c6d52",
     "epidermis": "#c49a78",
@@ -223,39 +222,31 @@ def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
     return {name: looks[k % len(looks)] for k, name in enumerate(dict.fromkeys(names))}
 
 
-# --- pages -------------------------------------------------------------------------------------------------
+# --- pages ----------------------------------------------------------------------------------------
 
 
-def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], Figure]:
+def styled(draw: Callable[[DataFrame], Figure]) -> Callable[[DataFrame], Figure]:
     """Run a drawing function under the shared style, whatever the caller's matplotlib settings are,
     and letter its panels.
     """
 
     @wraps(draw)
-    def inner(frame: pd.DataFrame) -> Figure:
+    def inner(frame: DataFrame) -> Figure:
         with theme():
             return finished(draw(frame))
 
     return inner
 
 
-@contextmanager
-def theme() -> Iterator[None]:
+def theme() -> AbstractContextManager:
     """Matplotlib's own defaults with this style on top; the caller's settings come back
     afterwards.
     """
-    import matplotlib as mpl
-
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(RC)
-        yield
+    return context(RC, after_reset=True)
 
 
 def colours(name: str, start: float, end: float, labels: Iterable[str]) -> dict[str, object]:
     """Labels in colours evenly spaced over a part of one of matplotlib's maps."""
-    import matplotlib as mpl
-
     labels = list(labels)
     return dict(zip(labels, mpl.colormaps[name](np.linspace(start, end, len(labels))), strict=True))
 
@@ -288,8 +279,6 @@ def sheet(
     `header` (inch) leaves room under the title. Panels are laid out in between, unless the caller
     does so (not `laid_out`).
     """
-    from matplotlib.figure import Figure
-
     fig = Figure(figsize=(width, height), layout="constrained" if laid_out else None)
     whose = f"after Cysyk 1999, Fig. {number}" if number else ""
     aside = bool(whose) and width > 1.2 * COLUMN_WIDTH  # the title beside the number, or below it
@@ -325,17 +314,27 @@ def study_figure(
     return sheet(title, wrapped(note, note_width(width)), height, header=header, width=width)
 
 
-def finished(fig: Figure) -> Figure:
-    """A picture whose panels are drawn, with their letters and the powers of ten of their axes."""
-    set_powers(fig)
-    letter(fig)
-    return fig
-
-
-def letter(fig: Figure) -> None:
-    """Bold lower-case letters above the left end of the panels, if there is more than one; twins
-    and insets have none, nor has a matrix of more panels than there are letters.
+class Powers(ScalarFormatter):
+    """Ticks as text, which is drawn faster than mathematics and looks the same, and the power of
+    ten beside an axis as mathematics.
     """
+
+    def get_offset(self) -> str:
+        """The power of ten."""
+        self.set_useMathText(True)
+        text = super().get_offset()
+        self.set_useMathText(False)
+        return text
+
+
+def finished(fig: Figure) -> Figure:
+    """A picture whose panels are drawn, with bold lower-case letters above their left ends if there
+    is more than one; twins and insets have none, nor has a matrix of more panels than letters.
+    """
+    for ax in [each for outer in fig.axes for each in (outer, *outer.child_axes)]:
+        for axis in (ax.xaxis, ax.yaxis):
+            if type(axis.get_major_formatter()) is ScalarFormatter:
+                axis.set_major_formatter(Powers())
     places: dict[tuple, Axes] = {}
     for ax in fig.axes:
         spec = ax.get_subplotspec()
@@ -346,9 +345,8 @@ def letter(fig: Figure) -> None:
             and ax.get_label() not in ("<colorbar>", "twin")
         ):
             places.setdefault((id(spec.get_gridspec()), spec.num1, spec.num2), ax)
-    if not 2 <= len(places) <= 26:
-        return
-    for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
+    lettered = places.values() if 2 <= len(places) <= 26 else ()
+    for tag, ax in zip(ascii_lowercase, lettered, strict=False):
         ax.annotate(
             tag,
             (0, 1),
@@ -360,26 +358,7 @@ def letter(fig: Figure) -> None:
             fontweight="bold",
             annotation_clip=False,
         )
-
-
-def set_powers(fig: Figure) -> None:
-    """Powers of ten beside an axis as mathematics, the ticks themselves as text: as mathematics
-    they take a quarter of the time of a picture, and look the same.
-    """
-    from matplotlib.ticker import ScalarFormatter
-
-    class Powers(ScalarFormatter):
-        def get_offset(self):
-            self.set_useMathText(True)
-            try:
-                return super().get_offset()
-            finally:
-                self.set_useMathText(False)
-
-    for ax in [each for outer in fig.axes for each in (outer, *outer.child_axes)]:
-        for axis in (ax.xaxis, ax.yaxis):
-            if type(axis.get_major_formatter()) is ScalarFormatter:
-                axis.set_major_formatter(Powers())
+    return fig
 
 
 def in_kilo(axis: Axis) -> None:
@@ -389,23 +368,18 @@ def in_kilo(axis: Axis) -> None:
     label.set_text(label.get_text().replace("(Pa", "(kPa"))
 
 
-# --- direct labels -----------------------------------------------------------------------------------------
+# --- direct labels --------------------------------------------------------------------------------
 
 
 def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.ndarray:
     """Positions at least `gap` apart, in the order of `values` and closest to them (least squares).
 
     They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep
-    their order. What is closest is an isotonic regression, by the formula of largest least means
-    (Barlow, Bartholomew, Bremner and Brunk 1972): scipy's takes a third of a second to import, for
-    a dozen labels.
+    their order.
     """
     values = np.asarray(values, float)
-    order, count = np.argsort(values, kind="stable"), np.arange(len(values))
-    steps = gap * count
-    sums = np.append(0.0, np.cumsum(values[order] - steps))
-    means = (sums[1:] - sums[:-1, None]) / np.maximum(count - count[:, None] + 1, 1)
-    shifted = np.array([means[: k + 1, k:].min(axis=1).max() for k in count])
+    order, steps = np.argsort(values, kind="stable"), gap * np.arange(len(values))
+    shifted = isotonic_regression(values[order] - steps).x
     shifted = np.clip(shifted, low, max(low, high - steps[-1]))
     out = np.empty_like(values)
     out[order] = shifted + steps
@@ -458,15 +432,11 @@ def _axes_height(ax: Axes) -> float:
 
 def haloed() -> dict[str, object]:
     """Of a text: a white rim, where it stands on symbols or lines."""
-    from matplotlib.patheffects import withStroke
-
     return {"path_effects": [withStroke(linewidth=1.6, foreground="white")]}
 
 
 def handle(label: str, **look) -> Line2D:
     """An entry of a legend."""
-    from matplotlib.lines import Line2D
-
     return Line2D([], [], label=label, **look)
 
 
@@ -474,8 +444,6 @@ def header_legend(fig: Figure, handles: Sequence[Line2D | Sequence[Line2D]], **k
     """Legend in one row under the title, in the room that `sheet` left by its `header`; several
     handles of one entry stand side by side, those that look alike as one.
     """
-    from matplotlib.legend_handler import HandlerTuple
-
     entries = [
         tuple({h.get_color(): h for h in each}.values()) if isinstance(each, list) else (each,)
         for each in handles

@@ -8,28 +8,21 @@ import os
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.figure import Figure
+from pandas import DataFrame
+from PIL import Image
 
-from cysyk1999.publishing.fonts import shared_fonts
 from cysyk1999.publishing.style import theme
 from fingerpad.files import write_atomically
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from PIL.Image import Image
-
 DPI = 300
-COLOURS = 255
-"""Most colours of a committed picture: a third of the bytes of true colour, and no difference to
-see.
-"""
-EXACT = 32
-"""Colours of a picture that are kept as they are, those of most pixels."""
-SOME = 64
-"""Most pixels that any other colour counts as when few are chosen for all of them."""
+COLOURS = 256
+"""Most colours of a committed picture: a third of the bytes of true colour, no visible change."""
 FLOAT_FORMAT = "%.6g"
 VECTORS = "FINGERPAD_VECTORS"
 """Environment variable that names the folder PDFs are written to; the workflow sets it."""
@@ -46,8 +39,8 @@ TEXT_COLUMNS = (
 )
 
 
-def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
-    """The frame with zeros for what is below `least` of a column's largest: so that two machines
+def without_round_off(frame: DataFrame, least: float = 1e-11) -> DataFrame:
+    """The frame with zeros for what is below `least` of a column's largest, so that two machines
     publish the same bytes.
     """
     for column in frame.select_dtypes("float"):
@@ -56,25 +49,23 @@ def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame
     return frame
 
 
-def write_frame(frame: pd.DataFrame, path: Path) -> None:
+def write_frame(frame: DataFrame, path: Path) -> None:
     """Write a frame as CSV, six significant digits."""
     write_atomically(
         path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
     )
 
 
-def read_frame(path: Path) -> pd.DataFrame:
+def read_frame(path: Path) -> DataFrame:
     """Read a figure's CSV back: text columns as text (surface "79" too), everything else as
     numbers.
     """
-    with open(path, encoding="utf-8") as stream:
-        header = stream.readline().strip().split(",")
-    return pd.read_csv(path, dtype={c: str for c in TEXT_COLUMNS if c in header})
+    return pd.read_csv(path, dtype=dict.fromkeys(TEXT_COLUMNS, str))
 
 
 def settle(fig: Figure, dpi: float = DPI) -> None:
-    """Lay a picture out, once for all its files: a solver of layouts differs in the last digit from
-    one process to the next.
+    """Lay a picture out once for all its files, with rounded edges of its panels: the layout's
+    last digits differ from one process to the next.
     """
     fig.set_dpi(dpi)
     engine = fig.get_layout_engine()
@@ -93,64 +84,24 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data,
     same bytes.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     settle(fig, dpi)
     canvas = FigureCanvasAgg(fig)
     with theme():
         canvas.draw()  # savefig would draw all of it twice
-    few = in_few_colours(np.asarray(canvas.buffer_rgba()))
+    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+    few = picture.quantize(COLOURS, kmeans=1, dither=Image.Dither.NONE)
     write_atomically(path, lambda p: few.save(p, format="PNG", compress_level=6, dpi=(dpi, dpi)))
-
-
-def in_few_colours(pixels: np.ndarray) -> Image:
-    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most, white always
-    among them.
-
-    The `EXACT` that most pixels have stay what they are; the others are shared out among the rest,
-    none of which counts as more than `SOME` pixels: else a large field has all of them, and the bar
-    that explains it three.
-    """
-    from PIL import Image
-
-    words = pixels.view("<u4")[..., 0] & 0xFFFFFF
-    inked = words != 0xFFFFFF
-    ink = words[inked]
-    found, counts = np.unique(ink, return_counts=True)
-    order = np.argsort(-counts, kind="stable")
-    found, counts = found[order], counts[order]
-    palette = found.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :3]
-    entries = np.arange(len(found))
-    if len(found) > COLOURS - 1:
-        counts = np.minimum(counts[EXACT:], SOME)
-        rest = Image.fromarray(np.repeat(palette[EXACT:], counts, axis=0)[None])
-        few = rest.quantize(
-            COLOURS - 1 - EXACT, Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE
-        )
-        entries[EXACT:] = EXACT + np.asarray(few)[0, np.cumsum(counts) - 1].astype(int)
-        palette = np.concatenate(
-            [palette[:EXACT], np.array(few.getpalette(), np.uint8).reshape(-1, 3)]
-        )
-    entry_of = np.zeros(1 << 24, np.uint8)
-    entry_of[found] = entries + 1
-    places = np.zeros(inked.shape, np.uint8)
-    places[inked] = entry_of[ink]
-    out = Image.fromarray(places)
-    out.putpalette([255, 255, 255, *palette.ravel().tolist()])
-    return out
 
 
 def write_vectors(fig: Figure, path: Path) -> None:
     """Write a picture as PDF without dates: same data, same bytes."""
-    from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
     settle(fig)
-    canvas, unsaid = FigureCanvasPdf(fig), {"CreationDate": None, "Producer": None}
-    with theme(), shared_fonts():
-        write_atomically(path, lambda p: canvas.print_pdf(p, metadata=unsaid))
+    undated = {"CreationDate": None, "Producer": None}
+    with theme():
+        write_atomically(path, lambda p: FigureCanvasPdf(fig).print_pdf(p, metadata=undated))
 
 
-def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> None:
+def publish(fig: Figure, frame: DataFrame, png_path: str | os.PathLike) -> None:
     """Write ``fig_X.png``, beside it ``fig_X.csv`` with the plotted data, and ``fig_X.pdf`` into
     the folder of vectors if one is named (environment variable `VECTORS`).
     """
@@ -161,39 +112,33 @@ def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> No
         write_vectors(fig, Path(folder) / f"{png.stem}.pdf")
 
 
-def markdown(frame: pd.DataFrame) -> str:
+def markdown(frame: DataFrame) -> str:
     """The table as Markdown: whole numbers in full, others to four digits, empty cells for missing
     values.
     """
 
     def cell(value: object) -> str:
-        if isinstance(value, float):
-            if value != value:
-                return ""
-            digits = max(4, len(f"{abs(value):.0f}")) if value.is_integer() else 4
-            return f"{value:.{digits}g}"
-        return "" if value is None or value is pd.NA else str(value)
+        if pd.isna(value):
+            return ""
+        if not isinstance(value, float):
+            return str(value)
+        digits = len(f"{abs(value):.0f}") if value.is_integer() else 0
+        return f"{value:.{max(4, digits)}g}"
 
-    lines = ["| " + " | ".join(frame.columns) + " |", "|" + " --- |" * len(frame.columns)]
-    lines += [
-        "| " + " | ".join(cell(v) for v in row) + " |" for row in frame.itertuples(index=False)
-    ]
-    return "\n".join(lines) + "\n"
+    rows = [frame.columns, ["---"] * len(frame.columns), *frame.map(cell).itertuples(index=False)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
 
 
-def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
-    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by
-    ``frame.attrs["summary"]`` if there is one, with the columns that ``frame.attrs["columns"]``
-    names if it does.
+def publish_table(frame: DataFrame, csv_path: str | os.PathLike) -> None:
+    """Write ``name.csv`` and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there
+    is one, with the columns that ``frame.attrs["columns"]`` names if it does.
     """
     path = Path(csv_path)
     write_frame(frame, path)
-    shown = frame[frame.attrs.get("columns", list(frame.columns))]
-    text = "".join(f"{line}\n\n" for line in [frame.attrs.get("summary")] if line) + markdown(shown)
+    text = markdown(frame[frame.attrs.get("columns", list(frame.columns))])
+    if summary := frame.attrs.get("summary"):
+        text = f"{summary}\n\n{text}"
     write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
-
-
-publish_table.__doc__ = publish_table.__doc__ % FLOAT_FORMAT
 
 
 def join_tables(job: SimpleNamespace) -> None:

@@ -105,10 +105,9 @@ def figure_catalogue(project: Project) -> Iterator[Job]:
 def moving_pictures(project: Project) -> Iterator[Job]:
     """Strokes as moving pictures."""
     if scenes := project.config.animations:
-        films = [f"{project.config.studies}/film_{scene}.webm" for scene in scenes]
         gifs = [f"{project.config.studies}/animation_{scene}.gif" for scene in scenes]
         read = {"histories": [project.full_history(scene) for scene in scenes]}
-        yield Job(animations, read, {"gifs": gifs, "films": films}, priority=1)
+        yield Job(animations, read, {"gifs": gifs}, priority=1)
 
 
 @part("fields")
@@ -174,7 +173,9 @@ def report(project: Project) -> Iterator[Job]:
         ("Tables", c.tables, (".csv",)),
     ):
         shown = [p for p in made if Path(p).parent == Path(folder) and p.endswith(endings)]
-        published = (p.as_posix() for p in Path(folder).glob("*") if p.suffix in endings)
+        published = [p.as_posix() for p in Path(folder).glob("*") if p.suffix in endings]
+        if category == "Tables":  # a table without Markdown is data of a figure
+            published = [p for p in published if Path(p).with_suffix(".md").exists()]
         before = sorted(path for path in published if path not in shown)
         if shown or before:
             yield pages_of(project, category, shown, before)
