@@ -35,7 +35,7 @@ def made():
     return histories, synthetic.meshes(histories)
 
 
-# --- steady states and edges ---------------------------------------------------------------------------
+# --- steady states and edges ----------------------------------------------------------------------
 
 
 @pytest.mark.unit
@@ -91,7 +91,7 @@ def test_full_fields_of_a_steady_scene_are_those_of_the_ends_of_its_legs():
     assert sunk == pytest.approx([0.5 * MM, 1.0 * MM, 1.6 * MM, 2.5 * MM], abs=2e-6)
 
 
-# --- figures -------------------------------------------------------------------------------------------
+# --- figures --------------------------------------------------------------------------------------
 
 
 @pytest.mark.unit
@@ -191,7 +191,7 @@ def test_a_subject_added_to_the_folder_is_drawn(made, tmp_path):
     assert "subject mine" in set(frame["series"].dropna())
 
 
-# --- numbers -------------------------------------------------------------------------------------------
+# --- numbers --------------------------------------------------------------------------------------
 
 
 @pytest.mark.unit

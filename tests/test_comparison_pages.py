@@ -58,7 +58,8 @@ def test_chapters(figure, chapter):
     [
         (
             {},
-            "| axis 0 to 40,000 Pa | 39,580 Pa (± mesh 700, steps 80) | plausible | fills 99% of the axis |",
+            "| axis 0 to 40,000 Pa | 39,580 Pa (± mesh 700, steps 80) | plausible | fills 99% of "
+            "the axis |",
         ),
         (
             {"mesh_error": 1.0, "time_step_error": None},

@@ -243,7 +243,7 @@ def test_curvature_enters_the_tangent():
     assert np.abs(plain.condensed_displacement - step.condensed_displacement).max() > 1e-4
 
 
-# -- condensation ---------------------------------------------------------------------------------------------------------
+# -- condensation ----------------------------------------------------------------------------------
 
 
 def system(seed, definite):
@@ -391,7 +391,7 @@ def test_condensed_equations_must_ascend():
         PardisoCondensation(pattern, np.array([5, 2]))
 
 
-# -- pressure -------------------------------------------------------------------------------------------------------------
+# -- pressure --------------------------------------------------------------------------------------
 
 
 def arc(order, count=6, radius=2.0):
@@ -413,7 +413,7 @@ def test_unit_pressure_loads_balance_the_chord(order):
     assert load[len(points) // 2, 1] > 0
 
 
-# -- points of the skin ------------------------------------------------------------------------------------------
+# -- points of the skin ----------------------------------------------------------------------------
 
 
 def points_on_arc(order, shear=1.0):

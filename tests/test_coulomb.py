@@ -206,7 +206,7 @@ def test_states_and_forces_come_back():
     assert not law.tangential.any() and not law.state.any()
 
 
-# -- what is not wanted costs nothing -------------------------------------------------------------------------------------
+# -- what is not wanted costs nothing --------------------------------------------------------------
 
 PRESS, SLIDE = {"press_to_force": "5 gf"}, {"slide": "0.5 mm", "speed": "10 mm/s"}
 

@@ -67,7 +67,8 @@ def test_fallback_is_taken_where_there_is_no_pardiso(monkeypatch):
 _THREADS_OF_MKL = """
 import numpy as np
 from fingerpad.mechanics.linear_solver import PardisoCondensation, SymmetricPattern
-solver = PardisoCondensation(SymmetricPattern(np.array([[0, 1]]), np.arange(2)[:, None]), np.array([0]))
+pattern = SymmetricPattern(np.array([[0, 1]]), np.arange(2)[:, None])
+solver = PardisoCondensation(pattern, np.array([0]))
 print(solver._library.MKL_Get_Max_Threads())
 """
 

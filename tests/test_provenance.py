@@ -1,4 +1,6 @@
-"""What a job rests on is found from its imports, and what a result was made with from the code's content."""
+"""What a job rests on is found from its imports, and what a result was made with from the code's
+content.
+"""
 
 import pytest
 

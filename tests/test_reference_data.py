@@ -87,7 +87,8 @@ def test_a_subject_of_the_same_name_in_another_file_is_another_subject(tmp_path)
 def test_order_of_columns_and_trailing_lines_do_not_matter(tmp_path):
     path = tmp_path / "data.csv"
     path.write_text(
-        "how_obtained,force_N,subject,indenter,depth_mm,speed_mm_per_s,source\nscale,0.2,me,flat plate,1,0,me\n\n\n"
+        "how_obtained,force_N,subject,indenter,depth_mm,speed_mm_per_s,source\nscale,0.2,me,flat "
+        "plate,1,0,me\n\n\n"
     )
     assert list(read_force_depth(path).columns) == list(FORCE_DEPTH)
 
@@ -164,7 +165,8 @@ def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path):
 def test_relaxation_shares_must_sum_to_less_than_one(tmp_path):
     path = tmp_path / "relaxation.csv"
     path.write_text(
-        "series,indenter,term,g,tau_s,source,how_obtained\na,point probe,1,0.6,1,x,y\na,point probe,2,0.5,2,x,y\n"
+        "series,indenter,term,g,tau_s,source,how_obtained\na,point probe,1,0.6,1,x,y\na,point "
+        "probe,2,0.5,2,x,y\n"
     )
     with pytest.raises(
         ReferenceDataError, match=r"row 2, column g: series 'a' sums to 1.1; allowed: less than 1"

@@ -82,7 +82,7 @@ def _scaled(history, factor, depth=None):
     return _with(history, strain_energy_density=values)
 
 
-# --- figures ---------------------------------------------------------------------------------------------
+# --- figures --------------------------------------------------------------------------------------
 
 
 def test_impulses_of_the_raster_are_as_many_as_the_rate_says_and_the_same_again(made, reference):
@@ -285,7 +285,7 @@ def test_meanings_of_strain_energy_are_told_apart_by_their_change_in_the_hold(ma
     ]
 
 
-# --- trends ----------------------------------------------------------------------------------------------
+# --- trends ---------------------------------------------------------------------------------------
 
 
 def _holds(made, id_, **changed):

@@ -30,7 +30,7 @@ def off(found, truth):
     return np.abs(found - truth).sum() / truth.sum()
 
 
-# --- between two states -------------------------------------------------------------------------------------
+# --- between two states ---------------------------------------------------------------------------
 
 
 def test_a_bump_passes_under_the_skin():
@@ -95,7 +95,7 @@ def test_ends_are_the_states():
     )
 
 
-# --- the estimate -------------------------------------------------------------------------------------------
+# --- the estimate ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("ways", [(1e-4, 1e-4), (1e-4, 2e-4), (2e-4, 0.5e-4)])
@@ -119,7 +119,7 @@ def test_friction_that_sets_in_is_missed_too():
     assert missed(*states) > 0.08 and missed(*still) < missed(*states) / 2
 
 
-# --- strides ------------------------------------------------------------------------------------------------
+# --- strides --------------------------------------------------------------------------------------
 
 
 def outputs(count, way=0.05e-3, leg=1, dt=0.01):
@@ -244,7 +244,7 @@ def test_a_stride_takes_the_time_of_what_it_passes():
     assert steady.next()[0].dt == STEADY
 
 
-# --- histories at all outputs ---------------------------------------------------------------------------------
+# --- histories at all outputs ---------------------------------------------------------------------
 
 
 def made(places, passed):

@@ -1,7 +1,8 @@
 """A job of the workflow: a function, the files it reads and those it writes.
 
-A study, or any other part of the reproduction, declares its jobs in a module ``jobs``: a function decorated with
-`part` takes the `Project` and yields `Job` objects. Its rules follow; nothing else has to be registered.
+A study, or any other part of the reproduction, declares its jobs in a module ``jobs``: a function
+decorated with `part` takes the `Project` and yields `Job` objects. Its rules follow; nothing else
+has to be registered.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ Files = Mapping[str, list[str]]
 ALL_CORES = 1000
 """Threads of a job that fills the machine; Snakemake gives it as many as there are."""
 SILENT = ("files", "scene_files", "measured", "written")
-"""Keys that are no words of a job's command: files that it finds by itself, and what only triggers a rerun."""
+"""Keys that are no words of a job's command: files that it finds by itself, and what only triggers
+a rerun.
+"""
 
 
 @dataclass(frozen=True)
@@ -37,10 +40,11 @@ class Job:
     Parameters
     ----------
     do : callable
-        Function of a module that takes a namespace with a list of words for each key of `inputs`, `outputs`, `values`.
+        Function of a module that takes a namespace with a list of words for each key of `inputs`,
+        `outputs`, `values`.
     inputs, outputs, values : mapping of str to list of str
-        Files that are read and written, and parameters, by key. Outputs named ``picture(s)`` and ``table(s)`` bring
-        their data and Markdown along.
+        Files that are read and written, and parameters, by key. Outputs named ``picture(s)`` and
+        ``table(s)`` bring their data and Markdown along.
     name : str
         Name of the rule (default: that of `do`).
     modules : tuple of str
@@ -132,8 +136,8 @@ class Part:
 
     @property
     def title(self) -> str:
-        """First line of the docstring: what ``snakemake --list`` shows."""
-        return (self.jobs.__doc__ or "").strip()
+        """The docstring: what ``snakemake --list`` shows."""
+        return " ".join((self.jobs.__doc__ or "").split())
 
 
 _PARTS: dict[str, Part] = {}

@@ -35,7 +35,9 @@ class _Number(float):
 
 
 def as_written(value: Any) -> Any:
-    """`value` of a document, with the numbers in it told from SI numbers: where a unit is needed, they have none."""
+    """`value` of a document, with the numbers in it told from SI numbers: where a unit is needed,
+    they have none.
+    """
     if isinstance(value, (bool, SI)):
         return value
     if isinstance(value, Mapping):

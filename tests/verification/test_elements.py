@@ -25,7 +25,7 @@ YEOH = LAWS["yeoh"]
 PRONY = Prony((0.055, 0.3691), (3.25, 0.3414))
 
 
-# -- patch test ----------------------------------------------------------------------------------------------
+# -- patch test ------------------------------------------------------------------------------------
 
 
 def check_patch(element, strain, poisson, soft_element=1.0):
@@ -71,7 +71,7 @@ def test_patch(element, strain, poisson, must_fail):
     must_fail(check_patch, element, strain, poisson, soft_element=0.99)
 
 
-# -- tangent and energy --------------------------------------------------------------------------------------
+# -- tangent and energy ----------------------------------------------------------------------------
 
 
 def deformed_body(element, prony=None, poisson=0.45, shake=0.003):
@@ -314,7 +314,7 @@ def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
     must_fail(check, poisson=0.449)
 
 
-# -- pressure on edges ---------------------------------------------------------------------------------------
+# -- pressure on edges -----------------------------------------------------------------------------
 
 
 def check_uniform_pressure(element, curved, weight=1.0):

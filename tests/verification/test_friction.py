@@ -20,7 +20,7 @@ from fingerpad.reference_solutions import cattaneo_mindlin, friction_plate, hert
 from fingerpad.stimuli.motion import STEADY
 from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Sampled
 
-# -- a cylinder on a half-plane (lengths in half widths of the contact) --------------------------------------
+# -- a cylinder on a half-plane (lengths in half widths of the contact) ----------------------------
 
 DEPTH, RADIUS, SHEAR, POISSON, MU = 100.0, 2000.0, 1.0, 0.4999, 0.3
 HERTZ_LOAD = hertz.force(1.0, RADIUS, 2 * SHEAR / (1 - POISSON))
@@ -210,7 +210,7 @@ def test_full_stick(must_fail):
     must_fail(check_full_stick, friction=0.3)
 
 
-# -- flat punch ----------------------------------------------------------------------------------------------
+# -- flat punch ------------------------------------------------------------------------------------
 
 PUNCH_LOAD = 0.01
 
@@ -264,7 +264,7 @@ def test_sticking_punch(poisson, must_fail):
     must_fail(check_punch, poisson, poisson=0.0 if poisson == 0.3 else 0.3)
 
 
-# -- the plate of SSNV128 ------------------------------------------------------------------------------------
+# -- the plate of SSNV128 --------------------------------------------------------------------------
 
 
 def friction_plate_contact(elements, friction=friction_plate.FRICTION):
@@ -338,7 +338,7 @@ def test_friction_plate(must_fail):
     must_fail(check_friction_plate, friction=0.9)
 
 
-# -- incline -------------------------------------------------------------------------------------------------
+# -- incline ---------------------------------------------------------------------------------------
 
 
 def check_incline(nominal, friction=None, slope=0.1):
@@ -377,7 +377,7 @@ def test_incline(friction, must_fail):
         must_fail(check_incline, friction, friction=0.0)
 
 
-# -- strokes of a pad ----------------------------------------------------------------------------------------
+# -- strokes of a pad ------------------------------------------------------------------------------
 
 FLAT, ROUND = Flat(), Cylinder(curvature=105.0)
 PAD_MU = 0.5

@@ -15,7 +15,7 @@ from strips import Layer, half_strip
 from fingerpad.reference_solutions import layered, layered_contact
 from fingerpad.stimuli.shapes import Cylinder
 
-# -- thin layer ----------------------------------------------------------------------------------------------
+# -- thin layer ------------------------------------------------------------------------------------
 
 HALF_WIDTH, THIN_RADIUS, SHEAR, POISSON = 15.0, 2e4, 1.0, 0.49999
 #: half width, centre pressure and depth
@@ -64,7 +64,7 @@ def test_thin_bonded_incompressible_layer(element, must_fail):
     must_fail(check_thin_layer, element, ran_as="Q1")
 
 
-# -- cosine load on two layers -------------------------------------------------------------------------------
+# -- cosine load on two layers ---------------------------------------------------------------------
 
 WAVENUMBER, PRESSURE = 2.0, 0.01
 #: sinking under the crest
@@ -139,7 +139,7 @@ def test_layered_half_plane_kernel(element, ratio, thickness, must_fail):
     must_fail(check_kernel, element, ratio, thickness, poisson=0.4)
 
 
-# -- contact of a layered strip ------------------------------------------------------------------------------
+# -- contact of a layered strip --------------------------------------------------------------------
 
 SKIN = [Layer(0.85, 10.0, 0.48), Layer(0.85, 1.0, 0.48), Layer(3.3, 1.0, 0.48)]
 #: depth, centre pressure and half width

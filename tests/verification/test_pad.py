@@ -42,7 +42,7 @@ def pressed_whole(shape, strain):
     return press_pad(pad_body(pad_mesh(), strain), pad_mesh(), shape, force=LOAD)
 
 
-# -- separability --------------------------------------------------------------------------------------------
+# -- separability ----------------------------------------------------------------------------------
 
 
 def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
@@ -118,7 +118,7 @@ def test_separability_at_the_poisson_ratio_of_the_thesis(half, shape):
     assert (force, depth) == pytest.approx(SEPARATION_AT_048[shape], rel=1e-3)
 
 
-# -- symmetry ------------------------------------------------------------------------------------------------
+# -- symmetry --------------------------------------------------------------------------------------
 
 
 def check_half_is_full(shape, strain, layers=None):
@@ -145,7 +145,7 @@ def test_half_model_is_the_full_model(shape, strain, must_fail):
     must_fail(check_half_is_full, shape, strain, layers=(0.15e6, 0.015e6, 0.0151e6))
 
 
-# -- energy --------------------------------------------------------------------------------------------------
+# -- energy ----------------------------------------------------------------------------------------
 
 
 @cache
@@ -188,7 +188,7 @@ def test_energy_balance(strain, prony, must_fail):
         must_fail(check_energy, strain, prony, dissipated_share=0.9)
 
 
-# -- scaling -------------------------------------------------------------------------------------------------
+# -- scaling ---------------------------------------------------------------------------------------
 
 
 def check_scaling(mesh, strain, length, stress, load_share=1.0):
@@ -220,7 +220,7 @@ def test_units_do_not_matter(half, strain, length, stress, must_fail):
     must_fail(check_scaling, half, strain, length, stress, load_share=1.001)
 
 
-# -- small strain is the limit of finite strain --------------------------------------------------------------
+# -- small strain is the limit of finite strain ----------------------------------------------------
 
 
 def check_small_is_the_limit(mesh, shape, poisson=0.48):
@@ -252,7 +252,7 @@ def test_finite_strain_becomes_small_strain(half, shape, must_fail):
     must_fail(check_small_is_the_limit, half, shape, poisson=0.47)
 
 
-# -- effort --------------------------------------------------------------------------------------------------
+# -- effort ----------------------------------------------------------------------------------------
 
 #: Newton iterations and factorisations of a ramp and hold of 16 steps
 EFFORT = {
@@ -356,7 +356,7 @@ def test_newton_converges_quadratically_on_a_sharp_cylinder(half, must_fail):
     must_fail(check_quadratic_convergence, half, shape=Misjudged)
 
 
-# -- limits of the Prony series ------------------------------------------------------------------------------
+# -- limits of the Prony series --------------------------------------------------------------------
 
 
 def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):

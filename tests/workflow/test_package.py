@@ -105,7 +105,10 @@ def test_a_specimen_of_ones_own_is_found_beside_the_built_in_ones(elsewhere, tmp
     (tmp_path / "mine.yaml").write_text(
         "specimen: {layers: soft}\nstimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf}]\n"
     )
-    code = "import fingerpad; print(fingerpad.load_scene('mine.yaml').specimen.layers.fat.youngs_modulus)"
+    code = (
+        "import fingerpad; "
+        "print(fingerpad.load_scene('mine.yaml').specimen.layers.fat.youngs_modulus)"
+    )
     assert float(elsewhere("-c", code).stdout) == pytest.approx(1e4)
     own.unlink()
     assert "calibrated_mean" in elsewhere("-c", code).stderr.splitlines()[-1]

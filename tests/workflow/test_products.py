@@ -151,7 +151,7 @@ def test_companions_have_fewer_nodes_than_what_they_accompany(configuration, req
         assert 0.3 * how.nodes < companion(scene, how).nodes < 0.75 * how.nodes, name
 
 
-def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(
+def test_companions_are_solved_beside_their_scenes_with_all_steps_and_with_every_two_made_one(
     thesis,
 ):
     (job,) = [job for job in thesis.jobs.values() if job.name == "simulate_stroke_10"]
@@ -270,7 +270,7 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
     }
 
 
-# -- the report ------------------------------------------------------------------------------------------------------------
+# -- the report ------------------------------------------------------------------------------------
 
 
 def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(thesis):
@@ -320,7 +320,7 @@ def test_published_studies_are_shown_and_not_made_for_the_report(thesis):
     assert "figures/studies/stability.png" in thesis.jobs["report_studies"].values["published"]
 
 
-# -- what an edit makes again ----------------------------------------------------------------------------------------------
+# -- what an edit makes again ----------------------------------------------------------------------
 
 
 def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
@@ -395,7 +395,10 @@ def own(tmp_path, monkeypatch):
     """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scenes").mkdir()
-    family = "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, line: {stimulus: {shape: line}}}}\n"
+    family = (
+        "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, "
+        "line: {stimulus: {shape: line}}}}\n"
+    )
     (tmp_path / "scenes" / "press.yaml").write_text(family)
     (tmp_path / "scenes" / "soft.yaml").write_text(
         "extends: press.yaml\nspecimen: {layers: calibrated_mean}\n"
@@ -461,11 +464,13 @@ def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
     [
         (
             {"scenes": ["press_flat", "pres"]},
-            "config.yaml: scenes[1]: 'pres' is not the name of a scene; allowed: names of scenes in",
+            "config.yaml: scenes[1]: 'pres' is not the name of a scene; allowed: names of scenes "
+            "in",
         ),
         (
             {"scenes": ["press_round"]},
-            "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_line",
+            "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, "
+            "press_line",
         ),
         (
             {"figure_numbers": ["9-99"]},
@@ -473,7 +478,8 @@ def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
         ),
         (
             {"figure_numbers": ["5-6"]},
-            "config.yaml: figure_numbers[0]: '5-6' shows scenes that the configuration has not: stroke_sub_10; allowed",
+            "config.yaml: figure_numbers[0]: '5-6' shows scenes that the configuration has not: "
+            "stroke_sub_10; allowed",
         ),
         (
             {"table_names": ["sumary"]},

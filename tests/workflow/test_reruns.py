@@ -62,7 +62,7 @@ def test_a_changed_scene_reruns_that_scene(finished):
     assert not {"calibrate", "calibration_pictures"} & set(jobs)
 
 
-def test_a_changed_specimen_reruns_the_scenes_that_name_it_and_a_further_file_of_forces_the_calibration(
+def test_a_changed_specimen_reruns_its_scenes_and_a_further_file_of_forces_the_calibration(
     finished,
 ):
     path = finished.root / "config/reference/force_depth/mine.csv"
@@ -159,9 +159,12 @@ def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
     assert copy.planned(*SMOKE) == {}
 
 
-# -- interrupted -----------------------------------------------------------------------------------------------------------
+# -- interrupted -----------------------------------------------------------------------------------
 
-SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.3 mm, steps: 60}\n"
+SCENE = (
+    "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: "
+    "{skin_edge: 0.3 mm, steps: 60}\n"
+)
 
 
 def start(project, *arguments):
@@ -305,11 +308,12 @@ def test_measured_files_are_checked_before_anything_is_simulated(clone):
     assert "Traceback" not in done.stderr and not (clone.root / "results").exists()
 
 
-# -- the report and the archive of a run ---------------------------------------------------------------------------------------
+# -- the report and the archive of a run -----------------------------------------------------------
 
 LISTEN = """<script>
 window.problems = [];
-window.addEventListener("error", (event) => problems.push(String(event.message || event.target.src)), true);
+const note = (event) => problems.push(String(event.message || event.target.src));
+window.addEventListener("error", note, true);
 console.error = (...words) => problems.push(words.join(" "));
 </script>"""
 LOOK = """<script>
@@ -330,14 +334,17 @@ window.addEventListener("load", async () => {
     await wait(100);
     app.showCategory(category);
     await wait(100);
-    seen.rows[category] = [...document.querySelectorAll("tbody tr")].map((row) => row.innerText.trim());
+    const rows = [...document.querySelectorAll("tbody tr")];
+    seen.rows[category] = rows.map((row) => row.innerText.trim());
   }
   for (const entry of Object.values(results)) {
     const frame = await framed(entry.data_uri), inside = frame.contentDocument;
     await wait(50);
     seen.pages.push({
-      name: entry.name, title: inside.querySelector("h1").innerText, cells: inside.querySelectorAll("td").length,
-      pictures: [...inside.images].map((image) => [image.naturalWidth, image.getBoundingClientRect().right]),
+      name: entry.name, title: inside.querySelector("h1").innerText,
+      cells: inside.querySelectorAll("td").length,
+      pictures: [...inside.images].map(
+        (image) => [image.naturalWidth, image.getBoundingClientRect().right]),
       wide: inside.documentElement.scrollWidth, words: inside.body.innerText.length});
     frame.remove();
   }
@@ -466,7 +473,7 @@ def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
     assert not (fresh.root / "results/archive").exists()
 
 
-# -- the full configuration ------------------------------------------------------------------------------------------------
+# -- the full configuration ------------------------------------------------------------------------
 
 
 def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clone):

@@ -94,7 +94,8 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
     assert {"simulate_own", "simulate_ramp40", "summary"} <= set(jobs)
     assert all(path.startswith("results/mine/") for path in outputs)
     (elsewhere / "Snakefile").write_text(
-        f"configfile: 'mine.yaml'\nmodule touch:\n    snakefile: {str(fresh.root / 'Snakefile')!r}\n    config: config\n"
+        "configfile: 'mine.yaml'\nmodule touch:\n    snakefile: "
+        f"{str(fresh.root / 'Snakefile')!r}\n    config: config\n"
         "use rule * from touch as touch_*\n"
     )
     jobs = fresh.planned("results/mine/tables/summary.csv", folder=elsewhere)

@@ -40,24 +40,50 @@ def _radius(m: Measures, number: Number) -> str:
 
 
 REASONS: dict[str, str | Callable[[Measures, Number], str]] = {
-    "arranged": "the thesis sets the same depth and width up; here the depth alone is made the same",
+    "arranged": (
+        "the thesis sets the same depth and width up; here the depth alone is made the same"
+    ),
     "bending": "open: every pad tried bends its epidermis more than that (study reconstruction)",
-    "bulk": "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do",
-    "by_construction": "holds by construction: of the half that is solved, of rigid contact, or of Eq 5-1",
+    "bulk": (
+        "mostly the bulk modulus, which does not relax with the shear modulus as the estimate "
+        "lets the whole force do"
+    ),
+    "by_construction": (
+        "holds by construction: of the half that is solved, of rigid contact, or of Eq 5-1"
+    ),
     "definition": "not of the energy that is shown; says what another definition would do",
-    "elements": "'10,000 nodes and elements' is one number for two: quadratic elements carry three or four nodes each",
-    "fibre": "the axis is that of another receptor's recording; the constants are those of Figs 5-20 and 5-21",
+    "elements": (
+        "'10,000 nodes and elements' is one number for two: quadratic elements carry three or "
+        "four nodes each"
+    ),
+    "fibre": (
+        "the axis is that of another receptor's recording; the constants are those of Figs 5-20 "
+        "and 5-21"
+    ),
     "future": "asked for in chapter 6 as future work; no result of the thesis",
-    "illegible": "the scanned labels leave open where the axis ends, or of which surface the number is",
+    "illegible": (
+        "the scanned labels leave open where the axis ends, or of which surface the number is"
+    ),
     "pad": _PAD,
     "pad_settled": _settled,
-    "panels": "panels taken as exchanged: as captioned, the layered pad would pass the axis that Fig 4-11 ends at",
+    "panels": (
+        "panels taken as exchanged: as captioned, the layered pad would pass the axis that Fig "
+        "4-11 ends at"
+    ),
     "profiles": "edges and peaks of the pressure lie where the surface has its arcs; "
     "what lags by a millimetre is the skin (T232a)",
     "radius": _radius,
-    "recorded": "recordings are shown there, alone or with a line that was fitted to them, and set the axis",
-    "ridge_sizes": "hangs on the sizes of ridges, which are not stated; the thesis calls their resolution insufficient",
-    "subjects": "one of the five subjects; the data of four are at hand (Dandekar, Raju and Srinivasan 2003)",
+    "recorded": (
+        "recordings are shown there, alone or with a line that was fitted to them, and set the axis"
+    ),
+    "ridge_sizes": (
+        "hangs on the sizes of ridges, which are not stated; the thesis calls their resolution "
+        "insufficient"
+    ),
+    "subjects": (
+        "one of the five subjects; the data of four are at hand (Dandekar, Raju and Srinivasan "
+        "2003)"
+    ),
 }
 
 

@@ -156,7 +156,7 @@ def _widths_fit(fine: Measures, variant: str, reference: pd.DataFrame) -> bool:
     )
 
 
-# --- evidence for the notes of the comparison ----------------------------------------------------------
+# --- evidence for the notes of the comparison -----------------------------------------------------
 
 
 def _nearest(label: str) -> str:

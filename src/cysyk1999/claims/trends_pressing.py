@@ -34,7 +34,7 @@ BEFORE = {label: NINE[label] for label in CYLINDERS[:-2]}
 """The cylinders but the two sharpest."""
 
 
-# --- order of the nine surfaces --------------------------------------------------------------------------
+# --- order of the nine surfaces -------------------------------------------------------------------
 
 
 @trend("TR01", quantity="depth", at="end", what="depth, mm")
@@ -58,7 +58,7 @@ def pressure_exceeds_energy_by_more(m):
     )
 
 
-# --- ramp and hold ---------------------------------------------------------------------------------------
+# --- ramp and hold --------------------------------------------------------------------------------
 
 
 @trend("TR06", quantity="depth", sign=1)
@@ -165,7 +165,7 @@ def falls_but_at_the_edge(m):
     return Trend(bool(np.isfinite(turn)), turn, note)
 
 
-# --- shape of the pressure -------------------------------------------------------------------------------
+# --- shape of the pressure ------------------------------------------------------------------------
 
 
 @trend("TR10")
@@ -219,7 +219,7 @@ def peak_moves_out(m):
     return Trend(early < top <= end and end > early, end, note)
 
 
-# --- strain energy ---------------------------------------------------------------------------------------
+# --- strain energy --------------------------------------------------------------------------------
 
 
 @trend("TR19")
@@ -273,7 +273,7 @@ def pressure_gives_energy(m):
     return everywhere({label: share <= AGREES for label, share in left.items()}, note, PANELS)
 
 
-# --- predicted rates -------------------------------------------------------------------------------------
+# --- predicted rates ------------------------------------------------------------------------------
 
 
 @trend("TR80", runs=FAST, window="hold", what="mean of the hold", silent=True)
@@ -354,7 +354,7 @@ def saturates_less_when_shallow(m):
     )
 
 
-# --- a pad with inner ridges -----------------------------------------------------------------------------
+# --- a pad with inner ridges ----------------------------------------------------------------------
 
 PLACES = {"centre": "915 um", "46 um": "915 um, 46 um"}
 """Receptors at the ridge's tip and beside it."""

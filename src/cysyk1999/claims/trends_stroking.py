@@ -43,7 +43,7 @@ def by_speed(m, quantity, speeds=tuple(SPEEDS)):
     return {speed: m.find(quantity, SPEEDS[speed]) for speed in speeds}
 
 
-# --- pressure and curvature ------------------------------------------------------------------------------
+# --- pressure and curvature -----------------------------------------------------------------------
 
 
 @trend("TR24", scene=STEPPED)
@@ -91,7 +91,7 @@ def _grow(values) -> bool:
     return all(b > a for a, b in pairwise(values.values()))
 
 
-# --- velocity --------------------------------------------------------------------------------------------
+# --- velocity -------------------------------------------------------------------------------------
 
 
 @trend("TR29", quantity="convexity_pressure", trace="pressure")
@@ -138,7 +138,7 @@ def energy_rate_is_proportional(m):
     )
 
 
-# --- stepped and stroked ---------------------------------------------------------------------------------
+# --- stepped and stroked --------------------------------------------------------------------------
 
 
 @trend("TR33")
@@ -206,7 +206,7 @@ def contact_kept_when_slow(m):
     )
 
 
-# --- strain energy ---------------------------------------------------------------------------------------
+# --- strain energy --------------------------------------------------------------------------------
 
 
 @trend("T263")
@@ -294,7 +294,7 @@ def eq_4_4_departs_with_velocity(m):
     return stepwise({k: 100 * v for k, v in residual.items()}, "%")
 
 
-# --- predicted impulses ----------------------------------------------------------------------------------
+# --- predicted impulses ---------------------------------------------------------------------------
 
 
 @trend("TR62")
@@ -376,7 +376,7 @@ def sharpest_answered_to_the_rate(m):
     return everywhere({k: found[k] > 50 for k in ("210", "315")}, note)
 
 
-# --- a plate, and ridges ---------------------------------------------------------------------------------
+# --- a plate, and ridges --------------------------------------------------------------------------
 
 
 @trend("TR47")

@@ -179,7 +179,7 @@ def total(frame: pd.DataFrame) -> pd.Series:
     return frame[list(PARTS)].sum(axis=1, min_count=1)
 
 
-# --- curves ----------------------------------------------------------------------------------------------
+# --- curves ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -355,7 +355,7 @@ def sampling(history: xr.Dataset, curve: Curve) -> float:
     return float(second / max(2**order - derived, 1.0))
 
 
-# --- numbers ---------------------------------------------------------------------------------------------
+# --- numbers --------------------------------------------------------------------------------------
 
 
 def number_errors(history: xr.Dataset, companion: Companion | None, *features: Feature) -> Errors:

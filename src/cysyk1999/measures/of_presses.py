@@ -83,7 +83,7 @@ def pressing(scene) -> bool:
     return forced(scene) and not strokes(scene)
 
 
-# --- counts ----------------------------------------------------------------------------------------------
+# --- counts ---------------------------------------------------------------------------------------
 
 
 @measure("count", lambda scene: not wavy(scene))
@@ -126,7 +126,7 @@ def nodes_present(history):
     return (abs(x - np.array(NODES)) <= 34e-3).sum()
 
 
-# --- depth, width, force ---------------------------------------------------------------------------------
+# --- depth, width, force --------------------------------------------------------------------------
 
 
 @measure("1/mm", pressing)
@@ -157,7 +157,7 @@ def peak_over_steady(history, runs):
     return force_N(history).max() / steady_force(runs[PLATE], max(pressed_depths(history)))
 
 
-# --- pressure --------------------------------------------------------------------------------------------
+# --- pressure -------------------------------------------------------------------------------------
 
 
 @measure("Pa", forced)
@@ -253,7 +253,7 @@ def critical_distance(history):
     )
 
 
-# --- decay in the hold -----------------------------------------------------------------------------------
+# --- decay in the hold ----------------------------------------------------------------------------
 
 
 def _decay(history: xr.Dataset, values: np.ndarray) -> tuple[float, float]:
@@ -334,7 +334,7 @@ def falls_up_to(history):
     return 1e3 * history["skin_x"].values[nodes][rising[0]] if parted else np.nan
 
 
-# --- strain energy ---------------------------------------------------------------------------------------
+# --- strain energy --------------------------------------------------------------------------------
 
 
 def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
@@ -388,7 +388,7 @@ def correlation_with_plain(history, runs):
     return found
 
 
-# --- predicted rates -------------------------------------------------------------------------------------
+# --- predicted rates ------------------------------------------------------------------------------
 
 
 @measure("impulses/s", lambda scene: held(scene) or slides(scene))

@@ -87,7 +87,7 @@ in_full, in_part, only_ten = (
 )
 
 
-# --- contact and pressure --------------------------------------------------------------------------------
+# --- contact and pressure -------------------------------------------------------------------------
 
 
 def _at_location(stroke: xr.Dataset, location: float) -> int:
@@ -165,7 +165,7 @@ def skin_drag(stroke):
     return {"mean": over.mean(), "least": over.min()}
 
 
-# --- pressure and curvature ------------------------------------------------------------------------------
+# --- pressure and curvature -----------------------------------------------------------------------
 
 
 @stroked("1", wavy)
@@ -211,7 +211,7 @@ def curvature_miss(stroke):
     return out
 
 
-# --- stepped and stroked, and the velocities -------------------------------------------------------------
+# --- stepped and stroked, and the velocities ------------------------------------------------------
 
 
 @stroked("mm", only_ten, beside=True)
@@ -257,7 +257,7 @@ def spread_of_traces(history, runs):
     return found
 
 
-# --- strain energy ---------------------------------------------------------------------------------------
+# --- strain energy --------------------------------------------------------------------------------
 
 
 @stroked("Pa", in_full)
@@ -313,7 +313,7 @@ def departure_of_eq_4_4(history, runs):
     return {"residual": rms(by_law - felt) / rms(felt), "R2": r_squared(felt, by_law)}
 
 
-# --- predicted rates -------------------------------------------------------------------------------------
+# --- predicted rates ------------------------------------------------------------------------------
 
 
 @stroked("impulses/s", named([FULL["10"]]))
@@ -390,7 +390,7 @@ def rate_after_energy_rate(stroke):
     return apart
 
 
-# --- strokes of a plate, and ridges ----------------------------------------------------------------------
+# --- strokes of a plate, and ridges ---------------------------------------------------------------
 
 
 def _settled(stroke: xr.Dataset) -> np.ndarray:

@@ -70,7 +70,7 @@ class Q(str):
         return Q(self.name, self.unit, label or self.label, read, self.checked, self.tolerance)
 
 
-# --- where and when --------------------------------------------------------------------------------------
+# --- where and when -------------------------------------------------------------------------------
 
 TIME = Q("time", "s", "time (s)", lambda h: h["time"].values, False, 1e-5)
 STROKE_TIME = TIME.reading(strokes.time_of)
@@ -84,14 +84,14 @@ NODE = Q("node_x", "mm", tolerance=1e-6)
 RECEPTOR = Q("receptor_depth", "um", tolerance=1e-6)
 TRIAL = Q("trial", "1", tolerance=1e-6)
 
-# --- surfaces --------------------------------------------------------------------------------------------
+# --- surfaces -------------------------------------------------------------------------------------
 
 HEIGHT = Q("height", "mm", "height (mm)", tolerance=1e-4)
 CURVATURE = Q("curvature", "1/m", "curvature (1/m)", tolerance=1e-4)
 RADIUS = Q("radius", "mm", "radius (mm)", tolerance=1e-4)
 DOUBT = Q("surface_may_be", "1/m", tolerance=1e-4)
 
-# --- contact and skin ------------------------------------------------------------------------------------
+# --- contact and skin -----------------------------------------------------------------------------
 
 FORCE = Q("force", "gf", "force (gf)", features.force_gf, False, 1e-5)
 NEWTON = Q("force", "N", "force (N)", steady.force_N, tolerance=2e-3)
@@ -151,7 +151,7 @@ SCALED_CURVATURE = Q(
     "scaled_skin_curvature", "Pa", read=strokes.scaled_curvature, checked=False, tolerance=1e-2
 )
 
-# --- receptors -------------------------------------------------------------------------------------------
+# --- receptors ------------------------------------------------------------------------------------
 
 SED = Q("strain_energy_density", "Pa", "strain energy density (Pa)", tolerance=2e-3)
 SED_LAW = Q("strain_energy_by_eq_4_4", "Pa", tolerance=5e-3)

@@ -109,7 +109,7 @@ def strokes(histories: Histories) -> dict[str, xr.Dataset]:
     return {name: histories[name] for name in sorted(found, key=order.get)}
 
 
-# -- pressure and strain energy ------------------------------------------------------------------------------------------
+# -- pressure and strain energy --------------------------------------------------------------------
 
 
 def upper_skin(history: xr.Dataset) -> np.ndarray:
@@ -184,7 +184,7 @@ def energy_from_pressure(
     )
 
 
-# -- nodes in contact, for Eqs 4-1 to 4-3 ------------------------------------------------------------------------------
+# -- nodes in contact, for Eqs 4-1 to 4-3 ----------------------------------------------------------
 
 
 def node_places(count: int) -> np.ndarray:
@@ -290,7 +290,7 @@ def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
     return linear(terms_of(law, spoken_of), spoken_of[P].to_numpy())
 
 
-# -- rates and impulses ----------------------------------------------------------------------------------------------------
+# -- rates and impulses ----------------------------------------------------------------------------
 
 
 @kept
@@ -511,7 +511,7 @@ def straight_line(x, y) -> tuple[float, float, float]:
     return float(slope), float(offset), r_squared(np.asarray(y), slope * np.asarray(x) + offset)
 
 
-# -- bursts --------------------------------------------------------------------------------------------------------------------
+# -- bursts ----------------------------------------------------------------------------------------
 
 
 @kept

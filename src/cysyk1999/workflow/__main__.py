@@ -1,7 +1,8 @@
-"""Do one job: ``python -m cysyk1999.workflow MODULE:FUNCTION --log FILE --KEY WORD ... --KEY WORD ...``
+"""Do one job: ``python -m cysyk1999.workflow MODULE:FUNCTION --log FILE --KEY WORD ... --KEY WORD
+...``
 
-The function takes the words by their keys. Everything printed goes into the log; if the job fails, its last line is also
-shown where the workflow was started.
+The function takes the words by their keys. Everything printed goes into the log; if the job fails,
+its last line is also shown where the workflow was started.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A finished run as a Workflow Run RO-Crate (Leo and others 2024, PLoS ONE 19:e0309210).
 
-``python -m cysyk1999.workflow.archive config/thesis.yaml results/archive`` copies inputs, code and outputs into one folder.
-Its ``ro-crate-metadata.json`` says what made what of what; ``costs.csv`` says what it took.
+``python -m cysyk1999.workflow.archive config/thesis.yaml results/archive`` copies inputs, code and
+outputs into one folder. Its ``ro-crate-metadata.json`` says what made what of what; ``costs.csv``
+says what it took.
 """
 
 from __future__ import annotations

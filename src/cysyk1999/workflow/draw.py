@@ -32,7 +32,9 @@ def draw_figures(job: SimpleNamespace) -> None:
 
 
 def with_statement(spec, frame, results, reference):
-    """The frame of a figure, and a row with what the thesis says of it, judged by its own scenes."""
+    """The frame of a figure, and a row with what the thesis says of it, judged by its own
+    scenes.
+    """
     histories, meshes, coarse = (
         Each(found.__getitem__, filter(found.__contains__, spec.needs)) for found in results
     )

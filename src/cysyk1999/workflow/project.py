@@ -21,7 +21,9 @@ from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
 COMPANIONS = {"coarse_mesh": 1, "coarse": 2}
-"""Companions of a scene on a coarser mesh: folder of their results -> time steps merged into one."""
+"""Companions of a scene on a coarser mesh: folder of their results -> time steps merged into
+one.
+"""
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")
 TABLES = ("thesis_comparison", "sensitivity")
 HISTORIES = {"history", "histories", "cases", "sweep"}
@@ -52,7 +54,7 @@ class Project:
         self._scenes: dict[str, Written] = {}
         self._check()
 
-    # -- what there is -----------------------------------------------------------------------------------------------------
+    # -- what there is -----------------------------------------------------------------------------
 
     def at(self, path: str) -> str:
         """A file or folder of the project: in the working directory if it is there, else beside the
@@ -165,7 +167,7 @@ class Project:
     def thesis_specimen(self) -> str:
         return self.at("config/specimens/thesis.yaml")
 
-    # -- names of results --------------------------------------------------------------------------------------------------
+    # -- names of results --------------------------------------------------------------------------
 
     def result(self, path: str) -> str:
         return f"{self.config.results}/{path}"
@@ -201,7 +203,7 @@ class Project:
         """Tables."""
         return [f"{self.config.tables}/{name}.csv" for name in names]
 
-    # -- simulations -------------------------------------------------------------------------------------------------------
+    # -- simulations -------------------------------------------------------------------------------
 
     @cached_property
     def drawn(self) -> list[Figure]:

@@ -22,9 +22,9 @@ from fingerpad.specimen.quality import quality_table
 def simulate(job: SimpleNamespace) -> None:
     """`scenes` -> plan.json, mesh.msh and summary.json beside each of `histories`.
 
-    `accuracies`: as_stated, or what replaces a scene's own. `strides`: 0 for the scene itself; for a companion on
-    a coarser mesh the number of time steps merged into one. A companion whose steps stay the same, as of steady
-    presses, is not solved again.
+    `accuracies`: as_stated, or what replaces a scene's own. `strides`: 0 for the scene itself; for
+    a companion on a coarser mesh the number of time steps merged into one. A companion whose steps
+    stay the same, as of steady presses, is not solved again.
     """
     cases = zip(job.scenes, job.accuracies, map(int, job.strides), job.histories, strict=True)
     for (path, accuracy, coarser), group in groupby(cases, lambda case: (*case[:2], case[2] > 0)):

@@ -255,7 +255,8 @@ def _read_effects(value: Any) -> dict[str, bool]:
     return effects
 
 
-_EffectsSurface = Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]  # type: ignore[valid-type]
+# type: ignore[valid-type]
+_EffectsSurface = Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]
 Effects = Annotated[
     dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)
 ]

@@ -1,4 +1,6 @@
-"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the skin."""
+"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the
+skin.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
 def touched_side(skin: np.ndarray) -> np.ndarray:
     """Whether points (n, 2) m along a skin are on the side that is touched.
 
-    All are of a skin that never turns back, however high it is; of others those of the upper half, and those above x = 0.
+    All are of a skin that never turns back, however high it is; of others those of the upper half,
+    and those above x = 0.
     """
     (x, y), way = skin.T, np.diff(skin[:, 0])
     if not len(way) or (way >= -1e-9 * np.ptp(x)).all():
@@ -71,8 +74,8 @@ def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
 
 
 def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
-    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` (m), down to
-    the first gap or the base.
+    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` (m), down
+    to the first gap or the base.
 
     Raises:
         MeshError: the skin does not cross x = 0.
@@ -122,7 +125,8 @@ def apex_radius(mesh: PadMesh) -> float:
 
 
 def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
-    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
+    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft
+    tissue to the bone, m.
 
     Raises
     ------
@@ -157,10 +161,11 @@ def apex_edge(mesh: PadMesh) -> float:
 
 
 def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is
+    ``depths`` (n,) m.
 
-    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured along the skin's normal, as
-    the layers are.
+    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured
+    along the skin's normal, as the layers are.
 
     Raises:
         MeshError: no point of that depth exists at that offset.
@@ -201,9 +206,11 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
 
 
 def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is
+    ``depths`` (n,) m.
 
-    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as :func:`below_skin`.
+    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as
+    :func:`below_skin`.
 
     Raises:
         MeshError: no point of that depth exists at that offset.

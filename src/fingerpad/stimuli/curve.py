@@ -141,7 +141,8 @@ class Curve(Profile):
         return np.column_stack([self.x[here], turn[here], room[here]])
 
     def _alone(self):
-        """First and last of the one or two pieces at whose starts the surface bulges by far more than beside them.
+        """First and last of the one or two pieces at whose starts the surface bulges by far more
+        than beside them.
 
         Two, for a corner that is between two samples is cut off by the line that joins them.
         """
@@ -158,7 +159,9 @@ class Curve(Profile):
                 yield int(k), int(k) + more
 
     def _straight(self, piece, step, off):
-        """How far (m) from the near end of a piece, to the right (step 1) or left (-1), the surface turns by at most ``off``."""
+        """How far (m) from the near end of a piece, to the right (step 1) or left (-1), the surface
+        turns by at most ``off``.
+        """
         (near, far), (at, to) = self._directions[::step], (self.x[:-1], self.x[1:])[::step]
         k, count = piece, 8
         while 0 <= k < len(near):

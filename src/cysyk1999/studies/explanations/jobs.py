@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 @part("explanations")
 def explanations(project: Project) -> Iterator[Job]:
-    """Which reading of what the thesis leaves open brings about what does not hold here: a table; 25 minutes of one core."""
+    """Which reading of what the thesis leaves open brings about what does not hold here: a table;
+    25 minutes of one core.
+    """
     scenes, names = [*PRESSED, *STROKED], [*READ_ONLY, *(n for n in READINGS if n not in READ_ONLY)]
     words = {name: re.sub("[^a-z]+", "_", name) for name in names}
     data = {name: project.result(f"explanations/{word}.csv") for name, word in words.items()}

@@ -315,7 +315,9 @@ def turned(
 
 
 def explanation(job: SimpleNamespace) -> None:
-    """Job: The reading `name` of the scenes in the folder `scenes`, the table `reference` -> `data`."""
+    """Job: The reading `name` of the scenes in the folder `scenes`, the table `reference` ->
+    `data`.
+    """
     reading = READINGS[job.name[0]]
     write_frame(
         verdicts(simulated(Path(job.scenes[0]), reading), reading, job.reference[0]),

@@ -11,7 +11,9 @@ from fingerpad.sweeps.language import load_sweep
 
 
 def run_sweep(job: SimpleNamespace) -> None:
-    """`sweep` (YAML) -> `dataset`, in a folder of its own; scenes that are there are not run again."""
+    """`sweep` (YAML) -> `dataset`, in a folder of its own; scenes that are there are not run
+    again.
+    """
     folder, cores = Path(job.dataset[0]).parent, len(os.sched_getaffinity(0))
     with held(folder) as lock:
         run_layout(lay_out(load_sweep(job.sweep[0]), folder, cores), cores, lock=lock)

@@ -19,7 +19,9 @@ TABLES = ("posterior", "readings", "emulator", "recovery", "families")
 
 @part("reconstruction")
 def reconstruction(project: Project) -> Iterator[Job]:
-    """The pad of 1999, inferred from the thesis's figures: tables and pictures; about an hour of one core."""
+    """The pad of 1999, inferred from the thesis's figures: tables and pictures; about an hour of
+    one core.
+    """
     evidence = {"evidence": [project.at("config/reference/reconstruction_evidence.csv")]}
     unknowns = {"unknowns": [project.at("config/reconstruction/unknowns.yaml")]}
     start = {"files": [project.at("config/specimens/long_term.yaml")]}

@@ -165,8 +165,8 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
 
 
 def reconstruction_pictures(job: SimpleNamespace) -> None:
-    """Job: `unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior,
-    evidence.
+    """Job: `unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`:
+    posterior, evidence.
     """
     samples, shown = map(pd.read_csv, job.parts)
     frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))

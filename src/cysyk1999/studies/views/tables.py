@@ -158,8 +158,8 @@ def candidate_stimuli(frame: pd.DataFrame) -> Figure:
 
 
 def table_pictures(job: SimpleNamespace) -> None:
-    """Job: `tables`, `reference` -> `pictures`: scorecard of thesis_comparison, candidate_stimuli of the
-    table of that name.
+    """Job: `tables`, `reference` -> `pictures`: scorecard of thesis_comparison, candidate_stimuli
+    of the table of that name.
     """
     tables = {Path(path).stem: pd.read_csv(path) for path in job.tables}
     for path in job.pictures:
