@@ -1,13 +1,33 @@
 """Every example scene runs from the command line, coarsely."""
 
+import doctest
 import json
+from importlib import import_module
 
 import pytest
 
+import fingerpad
+from fingerpad import HOMES
 from fingerpad.cli import main
 from test_scene import CONFIG
 
 EXAMPLES = sorted((CONFIG / "scenes" / "examples").glob("*.yaml"))
+
+
+PUBLIC = sorted({*HOMES.values(), "fingerpad.provenance"})
+"""Modules of what ``fingerpad`` offers."""
+
+
+@pytest.mark.unit
+@pytest.mark.parametrize("name", PUBLIC)
+def test_examples_of_docstrings_are_true(name):
+    assert doctest.testmod(import_module(name)).failed == 0
+
+
+@pytest.mark.unit
+def test_each_verb_has_an_example():
+    for verb in ("load_scene", "plan", "simulate", "sweep", "respond"):
+        assert ">>> " in getattr(fingerpad, verb).__doc__, verb
 
 
 @pytest.mark.unit

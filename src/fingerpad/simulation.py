@@ -101,24 +101,53 @@ def simulate(
 ) -> xr.Dataset:
     """Simulate a scene.
 
-    Args:
-        scene: a checked scene, or a file or dictionary of one. plan: how (default:
-        ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or read as the plan
-        says). A run that misses the tolerance that its plan was asked for is refined and run again,
-        a few times at most, unless the scene says ``once`` or a mesh is given; the history tells of
-        its last plan. progress: called after each step with time_s, end_time_s, contact_width_mm,
-        iterations, cutbacks. fields: full fields of strain energy, strain and stress as well, at
-        the scene's snapshots, or of the last state.
+    A run that misses the tolerance it was asked for is refined and run again, a few times at most,
+    unless the scene says ``once`` or a mesh is given. The history describes the last run.
 
-    Returns:
-        The history of the whole pad (see :mod:`fingerpad.results`).
+    Parameters
+    ----------
+    scene : Scene, path or dict
+        The scene, checked or as a document.
+    plan : Plan, optional
+        How it is solved (default: ``fingerpad.plan(scene)``).
+    mesh : PadMesh, optional
+        Mesh of the whole pad (default: built or read as the plan says).
+    progress : callable, optional
+        Called after each step with a dict of time_s, end_time_s, contact_width_mm, iterations,
+        cutbacks.
+    fields : bool
+        Whether to keep full fields of strain energy, strain and stress, at the scene's snapshots or
+        of the last state.
 
-    Raises:
-        SceneError: the file or the dictionary is wrong. PlanError, MeshError, OutlineError: the
-        input cannot be meshed or planned (before anything is solved). ReceptorError: a receptor
-        lies outside the soft tissue. NonConvergence: a step failed for good; its ``dataset`` is the
-        history up to the last converged step. A KeyboardInterrupt has the same ``dataset``, if a
-        step had converged.
+    Returns
+    -------
+    xarray.Dataset
+        The history of the whole pad, in SI (see :mod:`fingerpad.results`).
+
+    Raises
+    ------
+    SceneError
+        The scene is wrong.
+    PlanError, MeshError, OutlineError
+        It cannot be planned or meshed; nothing was solved.
+    ReceptorError
+        A receptor lies outside the soft tissue.
+    NonConvergence
+        A step failed for good. Its ``dataset`` is the history up to the last converged step; a
+        KeyboardInterrupt has the same, if a step had converged.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> history = simulate(press)
+    >>> round(1e3 * float(history.contact_width[-1]), 1)
+    2.7
+    >>> history.fingerpad.force_N.values.round(3).tolist()
+    [0.0, 0.196]
     """
     scene = load_scene(scene)
     chosen = plan or _plan(scene)

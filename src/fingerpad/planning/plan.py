@@ -84,6 +84,19 @@ def plan(scene: Scene | str | Path | Mapping[str, Any], rules: Rules | None = No
         An override asks for what the scene cannot have, or the mesh for more than the machine has.
     MeshError
         An external mesh cannot be read, or the pad has no room for its ridges.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> chosen = plan(press)
+    >>> chosen.effects["friction"].on, chosen.effects["friction"].why
+    (False, 'the coefficient is 0')
+    >>> chosen.estimated_error < 0.15
+    True
     """
     return _planned(load_scene(scene), rules or RULES)
 

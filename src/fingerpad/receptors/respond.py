@@ -68,6 +68,17 @@ def respond(
     ValueError
         Nothing in the history takes time, there is no such afferent, or there is variability
         without a seed.
+
+    Examples
+    --------
+    >>> from fingerpad import simulate
+    >>> history = simulate({
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "0.5 s"}],
+    ...     "accuracy": "draft",
+    ... })
+    >>> respond(history).impulses.values.tolist()
+    [[37, 9]]
     """
     if not isinstance(history, xr.Dataset):
         raise TypeError(

@@ -7,6 +7,7 @@ are made with SI floats directly (``Cylinder(curvature=210.0)``).
 from __future__ import annotations
 
 import hashlib
+import html
 import json
 import math
 import re
@@ -14,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
+import yaml
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
@@ -266,7 +268,16 @@ Effects = Annotated[
 
 
 class Scene(Strict):
-    """One simulation: something pressed on a fingerpad, what to record and how well."""
+    """One simulation: something pressed on a fingerpad, what to record and how well.
+
+    Examples
+    --------
+    >>> scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_depth": "1 mm"}]})
+    >>> scene
+    Scene('scene', flat, press_to_depth, accuracy thesis)
+    >>> scene.varied({"friction": 0.3}).friction
+    0.3
+    """
 
     internal: ClassVar = frozenset({"name", "tags"})
 
@@ -303,6 +314,15 @@ class Scene(Strict):
             receptors = {"depths": [SI(depth) for depth in depths], **receptors}
             data["outputs"] = {**outputs, "receptors": receptors}
         return data
+
+    def __repr__(self) -> str:
+        legs = ", ".join(leg.key for leg in self.motion)
+        return f"Scene({self.name!r}, {self.stimulus.shape}, {legs}, accuracy {self.accuracy})"
+
+    def _repr_html_(self) -> str:
+        """The scene as YAML, for notebooks."""
+        text = yaml.safe_dump(self.canonical(), sort_keys=False, allow_unicode=True)
+        return f"<pre>{html.escape(text)}</pre>"
 
     @model_validator(mode="after")
     def _check(self) -> Scene:
@@ -503,22 +523,40 @@ def _sha256(content: bytes) -> str:
 
 
 def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scene") -> Scene:
-    """Read and check a scene; one that is made already is given back.
+    """Read and check a scene.
 
-    Args:
-        source: YAML file, a member of a family as if it were a file
-        (:mod:`fingerpad.scenes.families`), or a dictionary. Paths
-            in it are relative to the file (of a dictionary: to the working directory), and names of
-            specimens are looked up in config/specimens of that folder, of the folders above, and of
-            the package.
-        name: of the scene of a dictionary; a file's is the file's.
+    Parameters
+    ----------
+    source : Scene, path or dict
+        A YAML file (or a member of a family, as if it were a file) or a dictionary. Paths in it are
+        relative to the file, or to the working directory. Names of specimens are looked up in
+        ``config/specimens`` of that folder, of the folders above, and of the package. A `Scene` is
+        returned as it is.
+    name : str
+        Name of a scene from a dictionary; a file's scene has the file's name.
 
-    Returns:
-        The scene, every quantity an SI float.
+    Returns
+    -------
+    Scene
+        Every quantity is a float in SI.
 
-    Raises:
-        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
-        TypeError: it is none of these.
+    Raises
+    ------
+    SceneError
+        The file cannot be read, or something in it is wrong; one line.
+    TypeError
+        `source` is none of these.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> scene = load_scene(press)
+    >>> scene.stimulus.curvature, round(scene.motion[0].force, 3)
+    (210.0, 0.196)
     """
     if isinstance(source, Scene):
         return source

@@ -420,6 +420,17 @@ def sweep(
         The sweep or one of its scenes is wrong (before anything is run).
     NotFinished
         A batch failed.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> found = sweep(press, {"stimulus.curvature": ["79 1/m", "420 1/m"]})
+    >>> found.indentation_depth_end.values.round(2).tolist()
+    [1.01, 1.21]
     """
     import xarray as xr  # half a second, which the command does not need
 
