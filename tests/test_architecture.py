@@ -1,5 +1,6 @@
 """One way, enforced: the import contracts of pyproject.toml, and scripts that stay thin."""
 
+import ast
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -24,6 +25,39 @@ def test_no_modules_import_each_other_in_a_circle():
     TopologicalSorter(
         {m: graph.find_modules_directly_imported_by(m) for m in graph.modules}
     ).prepare()  # CycleError names them
+
+
+SOURCES = sorted((ROOT / "src").rglob("*.py"))
+
+
+def imported(path: Path) -> set[str]:
+    """Dotted names that a file imports, `from` names included."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return names
+
+
+def test_no_private_name_of_a_library_is_imported():
+    private = {
+        f"{path.name}: {name}"
+        for path in SOURCES
+        for name in imported(path)
+        if not name.startswith(("__future__", "fingerpad", "cysyk1999"))
+        and any(part.startswith("_") for part in name.split("."))
+    }
+    assert not private
+
+
+def test_one_binding_through_ctypes_and_nothing_pickled_but_between_processes():
+    found = {name: set() for name in ("ctypes", "pickle", "marshal")}
+    for path in SOURCES:
+        for name in found.keys() & {name.split(".")[0] for name in imported(path)}:
+            found[name].add(path.name)
+    assert found == {"ctypes": {"linear_solver.py"}, "pickle": {"gmsh_worker.py"}, "marshal": set()}
 
 
 @pytest.mark.parametrize(
