@@ -38,7 +38,7 @@ NEW = Figure(
     Panels(
         height=3.6,
         fill=Lines(looks={FORCE: {"ls": ":"}}),
-        ylabel="sunk (mm), force (gf)",
+        set={"ylabel": "sunk (mm), force (gf)"},
         legend={"loc": "upper left"},
     ),
 )

@@ -81,7 +81,7 @@ OWN = {
     "viscoelasticity": [("viscoelasticity", None)],
     "finite_strain": [("finite_strain", "tangent"), ("finite_strain", "begin_step")],
     "small_strain": [("small_strain", None)],
-    "ridges": [("ridges", None), ("layered", None)],
+    "ridges": [("ridges", None)],
     "symmetry": [("pad", "right_half")],
     "full-field output": [("simulation", "_element_pressure"), ("results", "add_snapshots")],
 }

@@ -372,15 +372,15 @@ def test_a_full_and_a_read_only_disk(disk, run, tmp_path, capsys, monkeypatch):
 
 def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histories, monkeypatch):
     """After every fault there are whole files or none, and the next run makes the same bytes."""
-    from cysyk1999.workflow.jobs import simulate
+    from cysyk1999.workflow import simulate
 
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
-    monkeypatch.setattr(simulate, "simulate", lambda *_, **__: histories[0])
+    monkeypatch.setattr(simulate.simulation, "simulate", lambda *_, **__: histories[0])
     monkeypatch.setattr(simulate, "read_pad_mesh", lambda *_: None)
     given = {"scenes": [scene], "accuracies": ["as_stated"], "meshes": ["own"], "strides": ["1"]}
     job = types.SimpleNamespace(**given, histories=[str(folder / "history.nc")])
     with Faults(folder) as counted:
-        simulate.run(job)
+        simulate.simulate(job)
     whole = files(folder)
     assert (
         set(whole) == {"history.nc", "mesh.msh", "plan.json", "summary.json"} and counted.calls > 10
@@ -390,10 +390,10 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
         shutil.rmtree(folder)
         with Faults(folder, at, ERRORS[at % len(ERRORS)]) as fault:
             try:
-                simulate.run(job)
+                simulate.simulate(job)
             except OSError:
                 assert all(content == whole[name] for name, content in files(folder).items()), (
                     fault.met
                 )
-        simulate.run(job)
+        simulate.simulate(job)
         assert files(folder) == whole, fault.met

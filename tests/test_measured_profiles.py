@@ -2,14 +2,13 @@
 they solve.
 """
 
-from functools import partial
-
 import numpy as np
 import pytest
 
-from fingerpad import load_scene, plan, simulate, simulation
+from fingerpad import load_scene, plan, simulate
 from fingerpad.cli import main
 from fingerpad.documents import SceneError
+from fingerpad.mechanics import stepping
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import PlanError, read_plan
 from fingerpad.results import summary
@@ -373,9 +372,7 @@ def test_the_advice_works(folder, monkeypatch):
     """
     x, y, shape = measured(7)
     y = shape + 20 * (y - shape)
-    monkeypatch.setattr(
-        simulation, "NewtonSettings", partial(simulation.NewtonSettings, most_iterations=20)
-    )
+    monkeypatch.setattr(stepping, "MOST_ITERATIONS", 20)
     with pytest.raises(
         NonConvergence, match='corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"'
     ) as caught:

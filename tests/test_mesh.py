@@ -760,7 +760,7 @@ def test_mesh_for_a_scene(draft, tmp_path):
         def __init__(self, **attributes):
             self.__dict__.update(attributes)
 
-    plan = Named(mesh_size=DRAFT, effects={"ridges": Named(on=False)})
+    plan = Named(mesh_size=DRAFT, parts=lambda scene: Named(ridges=None))
     layers = Named(stratum_corneum=None)
     built = mesh_for(
         Named(specimen=Named(outline=OUTLINE, mesh=None, stack=None, layers=layers)), plan

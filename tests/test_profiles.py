@@ -256,8 +256,8 @@ def test_work_does_not_grow_with_the_length_of_a_profile(monkeypatch):
     """Points near the surface look at the pieces near them, whether the profile has a thousand or a
     million.
     """
-    looked_at, loop = [], curve._closest
-    monkeypatch.setattr(curve, "_closest", lambda *arguments: looked_at.append(loop(*arguments)))
+    looked_at, loop = [], curve.closest
+    monkeypatch.setattr(curve, "closest", lambda *words: looked_at.append(loop(*words)))
     for count in (10**3, 10**6):
         x = 1e-5 * np.arange(count)
         at = np.column_stack([np.linspace(1e-3, 9e-3, 50), np.full(50, -0.3e-3)])

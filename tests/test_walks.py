@@ -287,14 +287,14 @@ def test_a_student_brings_a_mesh_and_forces(capsys):
     fit = fit_constant(
         curve, measured.depth_mm.to_numpy() * 1e-3, measured.force_N.to_numpy(), 0.0114
     )
-    assert fit.values[0] == pytest.approx(2.5, rel=1e-3)
+    assert fit.value == pytest.approx(2.5, rel=1e-3)
     figure, axes = plt.subplots()
     loaded = history.assign_coords(
         depth_mm=history.indentation_depth * 1e3, force_N=history.force * 0.0114
     )
     (line,) = loaded.force_N.plot(x="depth_mm", ax=axes, label="simulated on my mesh")
     axes.plot(
-        measured.depth_mm, measured.force_N / fit.values[0], "o", label="measured, over the factor"
+        measured.depth_mm, measured.force_N / fit.value, "o", label="measured, over the factor"
     )
     axes.legend()
     figure.savefig("mine.png")

@@ -263,6 +263,13 @@ def test_what_was_found_is_told_from_what_it_took(beyond, notes, error, outcome)
     assert judged(next(iter(CATALOGUE.values())), history, beyond).outcome == outcome
 
 
+def starve(monkeypatch, max_iterations):
+    """Let Newton's method have few iterations, and none more where nodes snap."""
+    few = partial(stepping.NewtonSettings, max_iterations=max_iterations)
+    monkeypatch.setattr(simulation, "NewtonSettings", few)
+    monkeypatch.setattr(stepping, "SNAP_ITERATIONS", 0)
+
+
 def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
     """A press in one step knows its work too roughly to note anything of it."""
 
@@ -271,8 +278,8 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
 
     assert "energy" not in notes("nu 0.48, flat") and "volume" not in notes("nu 0.48, flat")
     with pytest.MonkeyPatch.context() as mutant:
-        mutant.setattr(simulation, "_UNBALANCED", 1e-6)
-        mutant.setattr(simulation, "_SQUEEZED", 1.0)
+        mutant.setattr(simulation, "MAX_ENERGY_WARNING", 1e-6)
+        mutant.setattr(simulation, "MIN_DET_F_WARNING", 1.0)
         assert "the energy found is off" in notes("nu 0.48, flat") and "of its volume" in notes(
             "nu 0.48, flat"
         )
@@ -293,7 +300,7 @@ def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatc
 
     (graded,) = (name for name in CATALOGUE if name.startswith("54:"))
     assert noted(graded) and not noted("nu 0.48, flat")
-    monkeypatch.setattr(simulation, "_UNEVEN", 1e-9)
+    monkeypatch.setattr(simulation, "MAX_UNEVEN_WARNING", 1e-9)
     assert noted("nu 0.48, flat") and not noted("sharp bar, 1 mm")
 
 
@@ -301,11 +308,7 @@ def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
     """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much,
     steps are only cut.
     """
-    monkeypatch.setattr(
-        simulation,
-        "NewtonSettings",
-        partial(stepping.NewtonSettings, max_iterations=3, snap_iterations=0),
-    )
+    starve(monkeypatch, max_iterations=3)
     names = "bar, fillet 0.03 mm, 2 mm", "sharp bar, 2 mm"
     notes = [run(CATALOGUE[name], compare=False).history.attrs["notes"] for name in names]
     assert ["states near to one another" in each for each in notes] == [True, False]
@@ -313,9 +316,7 @@ def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
 
 def test_a_step_is_not_tried_for_ever(monkeypatch):
     case = CATALOGUE["needle through the pad"]
-    monkeypatch.setattr(
-        simulation, "NewtonSettings", partial(stepping.NewtonSettings, most_iterations=30)
-    )
+    monkeypatch.setattr(stepping, "MOST_ITERATIONS", 30)
     found = run(case, compare=False)
     assert (
         found.outcome == CLEAN
@@ -327,11 +328,8 @@ def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):
     """A solver starved of iterations fails cleanly, with the steps before; one that says nothing
     would not count as clean.
     """
-    monkeypatch.setattr(
-        simulation,
-        "NewtonSettings",
-        partial(stepping.NewtonSettings, max_iterations=2, snap_iterations=0, max_halvings=0),
-    )
+    starve(monkeypatch, max_iterations=2)
+    monkeypatch.setattr(stepping, "MAX_HALVINGS", 0)
     found = run(CATALOGUE["nu 0.49999, flat"], compare=False)
     assert not found.completed and found.outcome == CLEAN and "try" in found.message
     monkeypatch.setattr(stepping.QuasiStatic, "_advice", lambda self, reason: "")

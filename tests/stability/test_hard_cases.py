@@ -13,6 +13,7 @@ import pytest
 
 from fingerpad import load_scene, simulate, simulation
 from fingerpad.cli import main
+from fingerpad.mechanics import stepping
 from fingerpad.results import read_history, summary
 from fingerpad.scenes.scene import (
     Cylinder,
@@ -140,10 +141,10 @@ def starved(monkeypatch):
     """A solver that may iterate once and halve a step twice: enough for a light touch, not for 100
     gram-weight.
     """
-    starving = partial(
-        simulation.NewtonSettings, max_iterations=1, snap_iterations=0, max_halvings=2
-    )
-    monkeypatch.setattr(simulation, "NewtonSettings", starving)
+    few = partial(simulation.NewtonSettings, max_iterations=1)
+    monkeypatch.setattr(simulation, "NewtonSettings", few)
+    monkeypatch.setattr(stepping, "SNAP_ITERATIONS", 0)
+    monkeypatch.setattr(stepping, "MAX_HALVINGS", 2)
 
 
 def test_failure_saves_the_last_state_and_names_the_cause(starved, tmp_path, capsys):

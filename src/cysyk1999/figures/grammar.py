@@ -381,10 +381,12 @@ class Figure:
         """The measured data in `folder` that `frame` takes after its four arguments: one table or
         none.
         """
-        if not self.measured:
-            return ()
-        patterns, read = MEASURED[self.measured]
-        return (read([p for each in patterns.split() for p in sorted(Path(folder).glob(each))]),)
+        return (MEASURED[self.measured][1](self.measured_files(folder)),) if self.measured else ()
+
+    def measured_files(self, folder: str | PathLike) -> list[Path]:
+        """The files in `folder` that the measured data are read from."""
+        patterns = MEASURED[self.measured][0].split() if self.measured else []
+        return [path for pattern in patterns for path in sorted(Path(folder).glob(pattern))]
 
     def frame(
         self,
