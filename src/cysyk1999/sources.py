@@ -47,15 +47,18 @@ def imported_sources(*modules: str) -> list[Path]:
         There is no such module.
 
     Notes
-    ----- Imports inside functions count; those under ``TYPE_CHECKING`` do not. Who imports a verb
-    from ``fingerpad`` rests on the modules of all verbs.
+    -----
+    Imports inside functions count; those under ``TYPE_CHECKING`` do not. A module rests on what its
+    package imports. Who imports a verb from
+    ``fingerpad`` rests on the modules of all verbs.
     """
-    found = set().union(*map(_upstream, modules))
-    if "fingerpad" in found:
-        found = found.union(*map(_upstream, fingerpad.HOMES.values()))
-    parents = {name.rpartition(".")[0] for name in found}
-    parents |= {name.rpartition(".")[0] for name in parents}
-    return sorted(map(_file, (found | parents) - {""}))
+    found: set[str] = set()
+    todo = set(modules)
+    while todo:
+        found |= todo.union(*map(_upstream, todo))
+        verbs = set(fingerpad.HOMES.values()) if "fingerpad" in found else set()
+        todo = ({name.rpartition(".")[0] for name in found} | verbs) - found - {"", "fingerpad"}
+    return sorted(map(_file, found | {name.partition(".")[0] for name in found}))
 
 
 @cache

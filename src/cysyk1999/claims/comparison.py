@@ -71,10 +71,11 @@ def thesis_comparison(
     reference_csv : the table of printed numbers (see `read_reference`).
 
     Returns
-    ------- One row an id, columns `COLUMNS`; numbers in the row's `units`. Its errors, by `PARTS`,
-    are what the row's number changes by, in the same units, empty for what is `GIVEN`; it is judged
-    by their sum. Scenes that were not simulated give ``not_comparable``. `summary` of the rows is
-    in ``attrs["summary"]``.
+    -------
+    One row an id, columns `COLUMNS`; numbers in the row's `units`. Its errors, by `PARTS`, are what
+    the row's number changes by, in the same units, empty for what is `GIVEN`; it is judged by their
+    sum. Scenes that were not simulated give ``not_comparable``. `summary` of the rows is in
+    ``attrs["summary"]``.
     """
     reference = read_reference(reference_csv)
     rows = [

@@ -108,9 +108,10 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
     reference_csv : the table of printed numbers.
 
     Returns
-    ------- One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the
-    base as a draft, the variants, and which of base and variants are inside the range, give or take
-    the difference of base and draft. Cells of scenes that were not simulated are empty.
+    -------
+    One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the base as a
+    draft, the variants, and which of base and variants are inside the range, give or take the
+    difference of base and draft. Cells of scenes that were not simulated are empty.
     """
     reference = read_reference(reference_csv)
     rows = []

@@ -48,8 +48,9 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     entry : low, high, form and tolerance of the reference row, and its tick if it has one.
 
     Returns
-    ------- ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not
-    finite), and a remark.
+    -------
+    ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not finite), and
+    a remark.
     """
     low, high = float(entry["low"]), float(entry["high"])
     if not np.isfinite(value):
