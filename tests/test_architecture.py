@@ -1,6 +1,8 @@
 """One way, enforced: the import contracts of pyproject.toml, and scripts that stay thin."""
 
 import ast
+import subprocess
+import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -25,6 +27,13 @@ def test_no_modules_import_each_other_in_a_circle():
     TopologicalSorter(
         {m: graph.find_modules_directly_imported_by(m) for m in graph.modules}
     ).prepare()  # CycleError names them
+
+
+def test_types_of_public_modules_are_right(tmp_path):
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path)]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
 
 
 SOURCES = sorted((ROOT / "src").rglob("*.py"))

@@ -6,6 +6,7 @@ where that folder cannot be written. :data:`JIT` are the options of every loop o
 
 import time
 from contextlib import ExitStack
+from typing import Any
 
 from numba import njit
 from numba.core import event
@@ -23,7 +24,7 @@ def _can_be_kept() -> bool:
 
 
 #: Options of ``numba.njit``.
-JIT = {"error_model": "numpy", "boundscheck": False, "cache": _can_be_kept()}
+JIT: Any = {"error_model": "numpy", "boundscheck": False, "cache": _can_be_kept()}
 
 
 class _Notice(event.Listener):

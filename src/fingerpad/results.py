@@ -12,7 +12,7 @@ import platform
 import resource
 import sys
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -80,7 +80,7 @@ _OF_RECEPTORS = {
     "hydrostatic_pressure": ("Pa", "mean compressive stress, volumetric part"),
     "dilatation": ("1", "relative change of volume, det F - 1"),
 }
-VARIABLES = {
+VARIABLES: dict[str, tuple[Any, str, str]] = {
     name: (dims, *about)
     for dims, group in (
         (("time",), _OF_TIME),
@@ -92,7 +92,7 @@ VARIABLES = {
 """Name -> (dimensions, unit, long name) of every variable of a history."""
 FRICTION_VARIABLES = ("tangential_traction", "slip", "contact_state")
 """Those that only a history with friction has."""
-COORDINATES = {
+COORDINATES: dict[str, tuple[Any, str, str]] = {
     "time": ("time", "s", "time"),
     "receptor_depth": ("receptor", "m", "receptor depth below the undeformed skin"),
     "receptor_offset": ("receptor", "m", "lateral receptor position, undeformed"),
@@ -174,7 +174,7 @@ def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
 
 def add_snapshots(
     history: xr.Dataset,
-    times: np.ndarray,
+    times: list[float] | np.ndarray,
     points: np.ndarray,
     cells: np.ndarray,
     region: np.ndarray,
@@ -212,9 +212,9 @@ def add_snapshots(
         dims = ("snapshot", "outline_point", "axis")
         new["snapshot_indenter"] = (dims, "m", "outline of the stimulus", indenter)
     for name, values in (fields or {}).items():
-        dims = (*of_elements, f"component_of_{name}")[: values.ndim]
+        of_field = (*of_elements, f"component_of_{name}")[: values.ndim]
         unit, _, _, long_name = FIELDS[name]
-        new[f"snapshot_{name}"] = (dims, unit, f"{long_name}, middle of the element", values)
+        new[f"snapshot_{name}"] = (of_field, unit, f"{long_name}, middle of the element", values)
     history.update({name: _labelled(*about) for name, about in new.items()})
 
 
@@ -436,7 +436,7 @@ def _mostly_zero(values: np.ndarray) -> bool:
     """Whether packing is worth its time: solved values have digits to the last, and packed they
     take a fifth less room and four times the time.
     """
-    return np.count_nonzero(values) < values.size / 2
+    return bool(np.count_nonzero(values) < values.size / 2)
 
 
 class ResultError(ValueError):
@@ -527,9 +527,7 @@ def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
             line = np.column_stack([np.arange(len(outline) - 1), np.arange(1, len(outline))])
             meshes[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
         for part, (name, mesh) in enumerate(meshes.items()):
-            write_atomically(
-                directory / name, lambda partial, mesh=mesh: mesh.write(partial, file_format="vtu")
-            )
+            write_atomically(directory / name, partial(mesh.write, file_format="vtu"))
             parts.append(f'<DataSet timestep="{time!r}" part="{part}" file="{name}"/>')
     opening = '<VTKFile type="Collection" version="0.1"><Collection>'
     film = "\n".join([opening, *parts, "</Collection></VTKFile>\n"])

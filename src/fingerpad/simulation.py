@@ -172,7 +172,7 @@ def simulate(
                 why_not = f"the refined run on {following.nodes} nodes did not converge"
                 break
             except KeyboardInterrupt as stop:
-                stop.dataset = history  # the run before is whole
+                vars(stop)["dataset"] = history  # the run before is whole
                 raise
             runs.append(_outcome(again))
             chosen, history = following, again
@@ -219,8 +219,9 @@ class Simulation:
             self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None)
             observers.append(self.fields)
         soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
-        tolerance = {"force_tolerance": plan.newton_tolerance} if plan.newton_tolerance else {}
-        settings = NewtonSettings(single=soft, **tolerance)
+        settings = NewtonSettings(single=soft)
+        if plan.newton_tolerance:
+            settings = replace(settings, force_tolerance=plan.newton_tolerance)
         self.stepper = QuasiStatic(
             self.body, self.skin, self.profile, settings, observers, friction=self.parts.friction
         )
@@ -346,9 +347,10 @@ class Simulation:
         try:
             records = self.stepper.run(self.steps(), after, between)
         except (NonConvergence, KeyboardInterrupt) as stop:
-            stop.dataset, stop.hard = None, hard_in(self.scene)
+            vars(stop).update(dataset=None, hard=hard_in(self.scene))
             if done:
-                stop.dataset = self._history(done, states[: len(done) + 1], snapshots, False)
+                whole = self._history(done, states[: len(done) + 1], snapshots, False)
+                vars(stop)["dataset"] = whole
             raise
         if self.fields is not None and not snapshots and not wanted:
             snapshots[records[-1].leg, records[-1].time] = self._full_field(records[-1])
@@ -423,8 +425,8 @@ class Simulation:
             known = plan.element, plan.contact_edge, half_width, plan.receptor_height, steps, stroke
             error = max(own_errors(*known, rules=RULES, bumpy=bumpy).values())
         else:
-            known = plan.contact_edge, half_width, steps, stroke, plan.mesh_size.skin_edge
-            error = estimated_error(*known, rules=RULES, bumpy=bumpy)
+            built = plan.contact_edge, half_width, steps, stroke, plan.mesh_size.skin_edge
+            error = estimated_error(*built, rules=RULES, bumpy=bumpy)
         return max(error, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _unbounded(self, record: Record) -> Unbounded:
@@ -607,7 +609,7 @@ class Simulation:
             "receptor_offset": self.offset,
             "skin_x": skin[:, 0],
             "skin_y": skin[:, 1],
-            "skin_arc": skin_arc(*skin.T, apex),
+            "skin_arc": skin_arc(skin[:, 0], skin[:, 1], apex),
         }
         self.unbounded = [self._unbounded(record) for record in records]
         worst = max(

@@ -49,7 +49,7 @@ class Zone:
 
     nodes: np.ndarray
     equation: np.ndarray
-    shape: np.ndarray | None = None
+    shape: np.ndarray = None  # type: ignore[assignment]  # __post_init__ has it
     softness: np.ndarray | None = None
     softness_along: np.ndarray | None = None
     condensed: np.ndarray = field(init=False)
@@ -118,7 +118,7 @@ class Zone:
         out._columns, out._values = np.where(values != 0, np.searchsorted(used, columns), 0), values
         nodes = (self.shape[rows] != 0).any(axis=0)
         out.nodes, out.shape = self.nodes[nodes], self.shape[rows][:, nodes]
-        if self.softness is not None:
+        if self.softness is not None and self.softness_along is not None:
             out.softness, out.softness_along = (
                 each[rows, rows] for each in (self.softness, self.softness_along)
             )
@@ -133,7 +133,7 @@ class Zone:
             self._columns[rows],
             self._values[rows],
         )
-        if self.softness is not None:
+        if self.softness is not None and self.softness_along is not None:
             out.softness, out.softness_along = (
                 each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along)
             )
@@ -218,7 +218,7 @@ class ContactStep:
     state: np.ndarray | None = None
 
 
-def _inverse(matrix):
+def _inverse(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is,
     LU otherwise.
     """
@@ -501,7 +501,7 @@ def _pivot(answer: Response, offset, load: float | None, active):
         on = np.flatnonzero(active)
         system, right = np.empty((len(on) + by_force,) * 2), -offset[on]
         system[: len(on), : len(on)] = compliance[np.ix_(on, on)]
-        if by_force:
+        if load is not None:
             system[:-1, -1], system[-1, :-1] = lever[on], -lever[on]
             system[-1, -1], right = answer.corner, np.append(right, load)
         try:

@@ -78,12 +78,13 @@ class FiniteStrainBody:
             )
         )
         self.branches = Branches(prony, undeformed.shape) if prony else None
-        self._factor, self._history = 1.0, None
+        self._factor = 1.0
+        self._history: np.ndarray | None = None
         self.branch_work = 0.0
         self._stretch = np.ascontiguousarray(undeformed[:, :3]) if prony else None
         self._pointwise = None if pointwise is None else pointwise * self.shear
         self.smallest_jacobian = 1.0
-        self._data = None
+        self._data: np.ndarray | None = None
 
     def begin_step(self, dt: float) -> None:
         """Prepare a step of ``dt`` seconds (None: no time passes)."""

@@ -15,6 +15,8 @@ small dense system. What a zone's softness adds to the gaps it takes from the sl
 that has changed in the step.
 """
 
+from typing import cast
+
 import numpy as np
 
 from fingerpad.mechanics import kernels
@@ -71,11 +73,8 @@ class Coulomb:
 
     def restore(self, saved) -> None:
         """Come back to a saved state."""
-        self.tangential, self.state, self._pull, self.dissipated = (
-            saved[0].copy(),
-            saved[1].copy(),
-            *saved[2:],
-        )
+        self.tangential, self.state = saved[0].copy(), saved[1].copy()
+        self._pull, self.dissipated = saved[2:]
         self._before = saved[0].copy()
 
     def release(self) -> None:
@@ -111,7 +110,7 @@ class Coulomb:
         zone, part = rows.zone, rows.place
         tangent = tangents(rows.gradient)
         moved = np.einsum("ni,ni->n", motion, tangent)
-        if zone.softness is not None:
+        if zone.softness_along is not None:
             moved = moved - zone.softness_along @ self._before[part]
 
         def attempt(flexible):
@@ -137,7 +136,7 @@ class Coulomb:
     def accept(self, part: slice, step: ContactStep) -> None:
         """Take over forces and states of a solution."""
         self.tangential[:], self.state[:] = 0, 0
-        self.tangential[part], self.state[part] = step.tangential, step.state
+        self.tangential[part], self.state[part] = step.tangential, cast(np.ndarray, step.state)
 
     def pull(self, part: slice, gradient: np.ndarray) -> np.ndarray:
         """(nz, 2) N/m tangential force on the points of the zone, whose gap gradients (nz, 2)

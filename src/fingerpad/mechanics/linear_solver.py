@@ -15,6 +15,7 @@ import os
 import sys
 from functools import cache
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
@@ -115,7 +116,7 @@ class PardisoCondensation:
     name = "pardiso"
 
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
-        self._library = _mkl()
+        self._library = cast(ctypes.CDLL, _mkl())
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         if np.any(np.diff(self.condensed) <= 0):
             raise ValueError("condensed equations must be ascending")

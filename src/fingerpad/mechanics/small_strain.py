@@ -53,7 +53,7 @@ class SmallStrainBody:
         self._deviatoric, self._volumetric = map(self._everything, parts)
         scatter, most = space.pattern.scatter.ravel(), space.pattern.nonzeros + 1
         self._free = [np.bincount(scatter, part.ravel(), most) for part in parts]
-        self._factored = None
+        self._factored: tuple | None = None
         self._begin(1.0, np.zeros_like(self.u))
 
     def _stiffness(self, deviatoric, volumetric):

@@ -79,7 +79,8 @@ class NonConvergence(RuntimeError):
 
     def __init__(self, time: float, reason: str, advice: str, where: str = ""):
         super().__init__(f"no convergence after t = {time:.6g} s{where}: {reason}; try {advice}")
-        self.time, self.reason, self.advice, self.records = time, reason, advice, []
+        self.time, self.reason, self.advice = time, reason, advice
+        self.records: list[Record] = []
 
     def __str__(self):
         return super().__str__() + (f"; or {hard_here(self.hard)}" if self.hard else "")
@@ -250,7 +251,8 @@ class QuasiStatic:
         self._most_force = self._most_work = self._pressed = 0.0
         self._energies = (0.0, 0.0, 0.0)
         self.friction = None if friction is None else Coulomb(friction, places)
-        self._factors = self._flexible = self._stiffness = self._found = None
+        self._factors = self._flexible = self._stiffness = None
+        self._found: tuple[tuple, Rows] | None = None
         self._nodal = self._touched = None
         self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))

@@ -224,7 +224,7 @@ def own_errors(
     edge: float,
     half_width: float,
     at_receptors: float | None,
-    steps: int | None = None,
+    steps: float | None = None,
     stroke: Stroke | None = None,
     *,
     rules: Any,
@@ -274,7 +274,7 @@ def own_errors(
 def estimated_error(
     edge: float,
     half_width: float,
-    steps: int | None = None,
+    steps: float | None = None,
     stroke: Stroke | None = None,
     body_edge: float | None = None,
     *,

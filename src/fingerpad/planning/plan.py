@@ -52,7 +52,6 @@ from fingerpad.planning.surface import surface_of
 from fingerpad.planning.unbounded import Unbounded, ends_unbounded, in_words, seen_corners
 from fingerpad.scenes.scene import Discretisation, Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
-from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge, skin_ends
 from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.profile import Profile
@@ -145,7 +144,7 @@ def _planned(
         every = steps_per_leg // preset.steps
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    contact_error = {
+    contact_error: dict[str, Any] = {
         "half_width": earliest_half_width(scene, contact, timed),
         "steps": steps_per_leg / every if timed or moves else None,
         "stroke": stroke,
@@ -155,7 +154,7 @@ def _planned(
     if external is None:
         mesh = _built(case, preset, by_hand, effects, parts, rounding, contact_error)
     else:
-        mesh = _given(case, by_hand, rounding, contact_error)
+        mesh = _given(case, external, by_hand, rounding, contact_error)
     nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
 
@@ -173,8 +172,8 @@ def _planned(
     without = {name: left_out[name].error for name, effect in effects.items() if not effect.on}
     for name, error in list(without.items()):
         total = sum(without.values()) + mesh_error
-        asked = scene.tolerance is not None and name not in scene.effects
-        if error and asked and total > scene.tolerance:
+        asked = None if name in scene.effects else scene.tolerance
+        if error and asked is not None and total > asked:
             effects[name] = Effect(
                 True,
                 f"{EFFECTS[name].instead} would be wrong by up to {error:.1%} beside the mesh's "
@@ -211,7 +210,7 @@ def _planned(
         predicted_cost_s=_cost(nodes, steps, effects, rules),
         small_strain_error=sum(without.values()),
         least_error=max(at_edges, mesh.at_receptors),
-        error_from=max(sources, key=sources.get),
+        error_from=max(sources, key=sources.__getitem__),
         asked_error=scene.tolerance,
         once=scene.once,
         unbounded=_unbounded(case, final, mesh.external, mesh.edge, unresolved),
@@ -243,9 +242,9 @@ class _Mesh:
     place: str
     size: MeshSize | None = None
     at_receptors: float = 0.0
-    effects: Mapping[str, Effect] = field(default_factory=dict)
+    effects: dict[str, Effect] = field(default_factory=dict)
     external: PadMesh | None = None
-    errors: Mapping[str, float] = field(default_factory=dict)
+    errors: dict[str, float] = field(default_factory=dict)
     receptor_height: float | None = None
     notes: tuple[str, ...] = ()
 
@@ -275,8 +274,8 @@ def _built(
     finest = min([edge, *(each for _, each in size.focus)])
     at_receptors, meshed_effects = 0.0, {}
     for name, effect in effects.items():
-        if effect.on and EFFECTS[name].mesh:
-            meshed = EFFECTS[name].mesh(case, size, edge)
+        if effect.on and (mesh := EFFECTS[name].mesh):
+            meshed = mesh(case, size, edge)
             meshed_effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
             size, edge = meshed.size, meshed.edge
             at_receptors = max(at_receptors, meshed.error)
@@ -303,6 +302,7 @@ def _built(
 
 def _given(
     case: Case,
+    external: PadMesh,
     by_hand: Discretisation | None,
     rounding: float,
     contact_error: Mapping[str, Any],
@@ -316,9 +316,9 @@ def _given(
 
     def largest(mesh: PadMesh) -> float:
         at_edges, _ = edges_error(profile, apex_edge(mesh), rounding, case.rules)
-        return max(*errors(mesh, KINDS[mesh.element].solved).values(), at_edges)
+        return max(*errors(mesh, element_for(None, mesh)).values(), at_edges)
 
-    external, raised = raised_for(by_hand, case.external, case.tolerance, largest)
+    external, raised = raised_for(by_hand, external, case.tolerance, largest)
     element, edge = element_for(by_hand, external), apex_edge(external)
     by_quantity = errors(external, element)
     return _Mesh(
@@ -363,10 +363,11 @@ def _unbounded(
     )
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
     places, friction = list(in_words(profile, corners)), scene.friction > 0
-    for node, angle in skin_ends(external) if external is not None else ():
-        x = external.points[node, 0]
-        if abs(x) <= half_width and ends_unbounded(angle, friction):
-            places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
+    if external is not None:
+        for node, angle in skin_ends(external):
+            x = external.points[node, 0]
+            if abs(x) <= half_width and ends_unbounded(angle, friction):
+                places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
     centre = np.any((corners >= low - 2 * edge) & (corners <= high + 2 * edge))
     return Unbounded(tuple(places), bool(centre))
 
@@ -398,14 +399,15 @@ def refined(
         The plan, or why there is none ("" where none is wanted).
     """
     rules = rules or RULES
-    if before.missed(error) is None or before.once:
+    asked = before.asked_error
+    if asked is None or before.missed(error) is None or before.once:
         return ""
     if before.mesh_size is None:
         return "an external mesh is not refined"
     if runs >= rules.most_runs:
         return f"after {runs} runs"
     # what misses by some share is aimed at by as much below
-    aim = before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25))
+    aim = asked * min(_WORTH, max(asked / error, 0.25))
     finer = _planned(scene, rules, narrowest, aim)
     if finer.estimated_error > _WORTH * error:
         return "a finer mesh would not help"
@@ -439,7 +441,7 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
             contact_edge=edge,
             estimated_error=error,
         )
-    elif (external := external_mesh(scene)).element == "quad4":
+    elif (external := external_mesh(scene)) and external.element == "quad4":
         element = "Q1P0" if own.element == "Q2P1" else "Q2P1"
         nodes = len(external.elevated(element).points)
         out = replace(out, element=element, nodes=nodes // 2 + 1 if parts.half else nodes)

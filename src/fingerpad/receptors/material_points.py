@@ -52,13 +52,17 @@ class MaterialPoints:
     """
 
     def __init__(
-        self, body, points: np.ndarray, shear_instantaneous: np.ndarray, mirrored: bool = False
+        self,
+        body,
+        points: np.ndarray,
+        shear_instantaneous: np.ndarray | None,
+        mirrored: bool = False,
     ):
         recovered = recovery(body.space, _layers(body), np.atleast_2d(points), mirrored)
         self._place(body, *recovered, shear_instantaneous)
 
     @classmethod
-    def centres(cls, body, shear_instantaneous: np.ndarray) -> "MaterialPoints":
+    def centres(cls, body, shear_instantaneous: np.ndarray | None) -> "MaterialPoints":
         """A point in the middle of every element, in their order: the fields of a body as its
         receptors see them.
         """

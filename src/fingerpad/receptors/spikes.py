@@ -30,7 +30,10 @@ def integrated(time, rate) -> np.ndarray:
 
 
 def impulses(
-    time, rate, variation: float = 0.0, seed: int | np.random.Generator | None = None
+    time,
+    rate,
+    variation: float = 0.0,
+    seed: int | np.random.Generator | np.random.SeedSequence | None = None,
 ) -> np.ndarray:
     """Times (m,) s of impulses at an instantaneous rate.
 

@@ -124,9 +124,9 @@ class Every(Strict):
     """Interval."""
 
 
-_Times = Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)]
-
-
+_Time: Any = quantity("time", "non-negative")
+_Times = Annotated[tuple[_Time, ...], BeforeValidator(listed)]
+_PerLeg: Any = whole(1, MAXIMUM_SNAPSHOTS)
 Afferent = Literal["slowly_adapting", "rapidly_adapting"]
 _ResponsesSurface = bool | list[Afferent]
 
@@ -149,14 +149,14 @@ class Outputs(Strict):
     receptors: Receptors
     """Where strain energy is recorded."""
     snapshots: Annotated[
-        tuple[float, ...] | Every,
+        tuple[float, ...],
         OneOf(
             lambda value: Every if isinstance(value, (Mapping, Every)) else _Times,
             {"times": _Times, "every": Every},
         ),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
-    per_leg: whole(1, MAXIMUM_SNAPSHOTS) | None = None
+    per_leg: _PerLeg | None = None
     """Least number of outputs in each press and hold that takes time; left out, as many as the
     accuracy takes steps.
     """
@@ -175,6 +175,8 @@ class Outputs(Strict):
         return data
 
 
+_Tolerance: Any = number("a tolerance above 0 and below 1", 0.0, 1.0)
+_Steps: Any = whole(1, MAXIMUM_STEPS)
 _SWITCH = {True: True, False: False, "on": True, "off": False, "true": True, "false": False}
 _Switch = bool | Literal["on", "off", "true", "false"]
 
@@ -190,7 +192,7 @@ class Discretisation(Strict):
     `thesis`.
     """
 
-    tolerance: number("a tolerance above 0 and below 1", 0.0, 1.0) | None = None
+    tolerance: _Tolerance | None = None
     """Relative error allowed: a run that turns out to be worse is refined and run again."""
     once: Annotated[bool, BeforeValidator(_switch, json_schema_input_type=_Switch)] = False
     """Whether a tolerance is tried for once only."""
@@ -198,7 +200,7 @@ class Discretisation(Strict):
     """Element: displacement and pressure interpolation."""
     skin_edge: Length | None = None
     """Length of the element edges along the skin where contact is expected."""
-    steps: whole(1, MAXIMUM_STEPS) | None = None
+    steps: _Steps | None = None
     """Number of time steps of the whole motion."""
 
     @model_validator(mode="after")
@@ -213,7 +215,6 @@ class Discretisation(Strict):
 
 Level = Literal["draft", "thesis", "fine"]
 LEVELS = get_args(Level)
-_Tolerance = number("a tolerance above 0 and below 1", 0.0, 1.0)
 _ACCURACY = (
     f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, "
     "or a mapping of tolerance and once, or element, skin_edge, steps"
@@ -257,14 +258,18 @@ def _read_effects(value: Any) -> dict[str, bool]:
     return effects
 
 
-# type: ignore[valid-type]
-_EffectsSurface = Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]
+_EffectsSurface: Any = (
+    Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]  # type: ignore[misc]
+)
 Effects = Annotated[
     dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)
 ]
 
 
 # --- scene ----------------------------------------------------------------------------------------
+
+
+_Friction: Any = number("a coefficient of zero or more", 0.0, math.inf, low_included=True)
 
 
 class Scene(Strict):
@@ -288,7 +293,7 @@ class Scene(Strict):
     """What is touched; parts left out are the thesis's."""
     stimulus: Stimulus
     """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy."""
-    friction: number("a coefficient of zero or more", 0.0, math.inf, low_included=True) = 0.0
+    friction: _Friction = 0.0
     """Coulomb coefficient of friction."""
     motion: Motion
     """Programme of legs, one after the other."""
@@ -330,8 +335,7 @@ class Scene(Strict):
             check_programme(self.motion, self.stimulus.length)
         except Problem as problem:
             raise problem.below("motion") from None
-        if self.specimen.mesh is None:
-            self._check_inside()
+        self._check_inside()
         end = self.end_time
         if self.outputs.responses and end == 0:
             raise Problem(
@@ -368,6 +372,8 @@ class Scene(Strict):
 
     def _check_inside(self) -> None:
         thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
+        if thickness is None or half_width is None:  # a mesh
+            return
         ground = "bone" if self.specimen.stack is None else "base"
         deep = format_quantity(thickness, "length")
         below = f"above 0 mm and below the {deep} from the skin to the {ground}"
@@ -486,7 +492,7 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
         return value
     key, *rest = path
     if isinstance(part, Strict):
-        follows = type(part).follows.get(key, ())
+        follows = type(part).follows.get(str(key), ())
         part = {
             name: getattr(part, name) for name in type(part).model_fields if name not in follows
         }
@@ -508,7 +514,7 @@ def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
     """Where receptors of a slab or a half-round are unless the scene says: in the middles of its
     layers, m.
     """
-    for key, model in {"slab": Slab, "half_round": HalfRound}.items():
+    for key, model in (("slab", Slab), ("half_round", HalfRound)):
         stack = specimen.get(key) if isinstance(specimen, Mapping) else getattr(specimen, key, None)
         if stack is not None:
             try:
@@ -563,7 +569,7 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
     if not isinstance(source, (str, Path, Mapping)):
         raise TypeError(f"a scene is a Scene, a file or a dictionary, not {type(source).__name__}")
     given = isinstance(source, Mapping)
-    path = Path(f"{name}.yaml") if given else Path(source)
+    path = Path(f"{name}.yaml" if isinstance(source, Mapping) else source)
     written = Written(source, {}, (path,)) if given else read_scene(path)
     home = written.files[0]
     shown = name if given else path if home == path else f"{home} ({path.stem})"

@@ -186,7 +186,7 @@ def lay_out(
         # records under this name can only be failures that are tried again
         (folder / "batches" / f"{name}.jsonl").unlink(missing_ok=True)
     write_text(folder / "design.json", json.dumps(described))
-    content = {
+    content: dict[str, Any] = {
         "name": read.name,
         "digest": digest,
         "batches": batches,
@@ -334,7 +334,7 @@ def _run_jobs(
     cwd: Path | None = None,
 ) -> str:
     """Run commands, some at a time, each with its log; returns the last line of one that failed."""
-    waiting, started, problem = list(jobs), Counter(), ""
+    waiting, started, problem = list(jobs), Counter[str](), ""
     running: dict[str, subprocess.Popen] = {}
     try:
         while waiting or running:

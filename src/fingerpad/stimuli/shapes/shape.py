@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from inspect import get_annotations
 from operator import attrgetter
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fingerpad.documents import HIDE, Problem, Strict, nearest
 from fingerpad.fields import OneOf
@@ -24,6 +24,9 @@ class Shape(Strict, Profile):
 
     A subclass is a shape under the name that is the default of its field ``shape``.
     """
+
+    if TYPE_CHECKING:
+        shape: str
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
