@@ -1,4 +1,4 @@
-"""Compile the element loops into the package's cache: once at set-up, by two processes, instead of in the first simulations."""
+"""Compile the element loops into the cache: once at set-up, instead of in the first simulations."""
 
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
