@@ -277,9 +277,18 @@ def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
 def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.ndarray:
     """Isochoric second Piola-Kirchhoff stress (np, 4) at points: 11, 22, 12, 33, Pa.
 
-    Args:
-        laws: at the points. u: (n, 2) m. cells: (np, nen). grad: (np, nen, 2) 1/m. shear: (np,)
-        long-term moduli, Pa.
+    Parameters
+    ----------
+    laws
+        At the points.
+    u
+        (n, 2) m.
+    cells
+        (np, nen).
+    grad
+        (np, nen, 2) 1/m.
+    shear
+        (np,) long-term moduli, Pa.
     """
     out = np.empty((len(cells), 4))
     for part in laws:
