@@ -128,17 +128,23 @@ condition changes them.
 def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     """Forces over depth.
 
-    Args:
-        paths: a folder, all of whose CSV files are read, or files.
+    Parameters
+    ----------
+    paths
+        A folder, all of whose CSV files are read, or files.
 
-    Returns:
+    Returns
+    -------
+    pd.DataFrame
         Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names. A
         subject is a file and a name: a name that is in several files stands with its file, ``1
         (dandekar_2003)``.
 
-    Raises:
-        ReferenceDataError: a file is wrong, there is none, or it gives a subject's depth under an
-        indenter at a speed twice.
+    Raises
+    ------
+    ReferenceDataError
+        A file is wrong, there is none, or it gives a subject's depth under an indenter at a speed
+        twice.
     """
     if isinstance(paths, (str, Path)) and Path(paths).is_dir():
         files = sorted(Path(paths).glob("*.csv"))
@@ -236,11 +242,15 @@ def read_friction(path: str | Path) -> pd.DataFrame:
 def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
     """A table with exactly the columns of `schema`, in any order, and at least one row.
 
-    Raises:
-        ReferenceDataError: it cannot be read (:func:`fingerpad.tables.read_table`), a column is
-        missing or unknown, or a cell holds what its column does not allow.
+    Raises
+    ------
+    ReferenceDataError
+        It cannot be read (:func:`fingerpad.tables.read_table`), a column is missing or unknown, or
+        a cell holds what its column does not allow.
 
-    Returns:
+    Returns
+    -------
+    pd.DataFrame
         A row for each of the file's, indexed by its number as a text editor counts.
     """
     path, columns = Path(path), ", ".join(schema)

@@ -20,9 +20,16 @@ def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -
     fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last
     point.
 
-    Args:
-        x: (n,) m, ascending places of one contact. pressure: (n,) Pa, above zero. spacing: m, of
-        the last places. on_edge: how many of them there are to an edge of the skin's elements.
+    Parameters
+    ----------
+    x
+        (n,) m, ascending places of one contact.
+    pressure
+        (n,) Pa, above zero.
+    spacing
+        m, of the last places.
+    on_edge
+        How many of them there are to an edge of the skin's elements.
     """
     plain, reach = float(x[-1] + spacing / 2), _EDGES * on_edge * float(spacing)
     known = x > plain - reach - 4 * spacing  # further in there is no weight

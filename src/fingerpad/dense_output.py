@@ -40,9 +40,16 @@ def at_outputs(
 ):
     """The arrays of a history (states, ...) and its times (states,) s at all outputs.
 
-    Args:
-        found: at the unloaded pad and each of ``records``. skin_x: (skin nodes,) m, undeformed.
-        apex: the middle skin node. half: are the records' edges of the right half?
+    Parameters
+    ----------
+    found
+        At the unloaded pad and each of ``records``.
+    skin_x
+        (skin nodes,) m, undeformed.
+    apex
+        The middle skin node.
+    half
+        Are the records' edges of the right half?.
     """
     count = [len(record.passed) + 1 for record in records]
     state = np.concatenate([[0], np.repeat(np.arange(1, len(records) + 1), count)]).astype(int)

@@ -38,8 +38,12 @@ def pages(csv: str | PathLike, reference: pd.DataFrame) -> dict[str, str]:
     """Markdown of the comparison: "" is the first page, which leads to the others, and each other
     is a chapter's by its number.
 
-    Args:
-        csv: the published table. reference: the table of printed numbers, by id.
+    Parameters
+    ----------
+    csv
+        The published table.
+    reference
+        The table of printed numbers, by id.
     """
     table = pd.read_csv(csv, dtype=dict.fromkeys(("figure", "units", "condition", "note"), str))
     axis = table["id"].map(reference["form"]).eq("axis")

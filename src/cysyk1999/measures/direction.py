@@ -33,12 +33,21 @@ def both_ways(
     """Energies (time) Pa at a receptor while a plate moves to the right and, by the mirror image,
     to the left.
 
-    Args:
-        history: a stroke to the right. depth, offset: of the receptor, m, the offset from a ridge's
-        tip. steady: m of stroke to leave out. tip: lateral position of that tip, m.
+    Parameters
+    ----------
+    history
+        A stroke to the right.
+    depth, offset
+        Of the receptor, m, the offset from a ridge's tip.
+    steady
+        m of stroke to leave out.
+    tip
+        Lateral position of that tip, m.
 
-    Raises:
-        KeyError: the history has no receptor there.
+    Raises
+    ------
+    KeyError
+        The history has no receptor there.
     """
     slid = history.stroke_distance.values
     where = np.flatnonzero(np.abs(slid) >= steady * (1 - 1e-9))

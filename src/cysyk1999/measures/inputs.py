@@ -27,7 +27,9 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
     """Sort result files of the workflow, ``.../<simulations, coarse or
     coarse_mesh>/<scene>/<history.nc or mesh.msh>``.
 
-    Returns:
+    Returns
+    -------
+    tuple[Mapping, Mapping, Mapping]
         Mappings scene name -> result: the histories (`xarray.Dataset`), the meshes (`PadMesh`), and
         the companions on coarser meshes (:class:`cysyk1999.measures.errors.Companion`), whose files
         are both needed when one is looked at.

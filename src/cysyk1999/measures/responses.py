@@ -199,10 +199,14 @@ def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame
     Nodes are left out while they are nearer to the contact's edge than one node spacing, since the
     inverse distance has no bound there; the edge that the thesis sees is itself a node.
 
-    Args:
-        count: of nodes from the centre on; left out, all that ever touch.
+    Parameters
+    ----------
+    count
+        Of nodes from the centre on; left out, all that ever touch.
 
-    Returns:
+    Returns
+    -------
+    pd.DataFrame
         Columns time, node_x (undeformed), contact_pressure, distance to the contact's edge,
         displacement below that of the skin at the edge, downward speed, curvature of the surface,
         and ``ramp`` and ``past_peak`` (bool): up to the top of the ramp, and from the largest
@@ -303,7 +307,9 @@ def predicted_rate(
     """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre,
     or at an offset (m) beside.
 
-    Returns:
+    Returns
+    -------
+    pd.DataFrame
         Columns time, strain energy, its rate, what each contributes, and the rate (impulses/s); for
         a stroke the stroke distance too. The time of a kink between legs is there twice (see
         `fingerpad.receptors.laws.rate_by_leg`).
@@ -335,9 +341,11 @@ def rapidly_adapting_rate(
     """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the
     centre, or of strain energy.
 
-    Args:
-        stimulus: "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at
-        `depth`, m).
+    Parameters
+    ----------
+    stimulus
+        "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at `depth`,
+        m).
     """
     values = (
         skin_curvature(history, centre_node(history))
@@ -530,7 +538,9 @@ def bursts(
     between outputs; width is that time by the stroking velocity. The burst rate is the mean
     predicted rate over that time: impulses over duration.
 
-    Returns:
+    Returns
+    -------
+    pd.DataFrame
         One row a convexity: its label and curvature, burst width, duration and rate, the largest
         strain energy, energy rate and impulse rate.
     """

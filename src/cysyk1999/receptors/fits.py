@@ -27,11 +27,11 @@ class SkinSample:
 
     Attributes
     ----------
-    x : (time, n) m, deformed.
-    pressure : (time, n) Pa.
-    indentation : (time) m.
-    energy : (time) Pa.
-    reference : (time) m, or a number.
+    x : (nt, n) m, deformed.
+    pressure : (nt, n) Pa.
+    indentation : (nt,) m.
+    energy : (nt,) Pa.
+    reference : (nt,) m, or a number.
     """
 
     x: np.ndarray

@@ -49,10 +49,20 @@ class Law:
     undeformed, every law is the linear solid of that modulus, and Prony branches relax it; without
     it (zero) t is still a number.
 
-    Attributes:
-        name: in the scene language. energy: psi, Pa. stress: ``(m, t)``. tangent: ``(m, t, f, g,
-        h)``. constants: name -> :class:`Constant`, in the order in which the formulas take them.
-        bilinear: psi is linear in I1, f is zero and is left out of the element loops.
+    Attributes
+    ----------
+    name
+        In the scene language.
+    energy
+        Psi, Pa.
+    stress
+        ``(m, t)``.
+    tangent
+        ``(m, t, f, g, h)``.
+    constants
+        Name -> :class:`Constant`, in the order in which the formulas take them.
+    bilinear
+        Psi is linear in I1, f is zero and is left out of the element loops.
     """
 
     name: str
@@ -94,8 +104,12 @@ def assign(
 ) -> tuple[Assigned, ...]:
     """Each law once, with the elements of the regions that chose it.
 
-    Args:
-        choices: law and its constants of each region. region: (ne,) index into them.
+    Parameters
+    ----------
+    choices
+        Law and its constants of each region.
+    region
+        (ne,) index into them.
     """
     out = []
     for law in dict.fromkeys(law for law, _ in choices):

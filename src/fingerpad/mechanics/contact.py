@@ -38,13 +38,20 @@ class Zone:
     """Points of the skin that may touch, and where the degrees of freedom of its nodes sit in the
     condensed system.
 
-    Attributes:
-        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values
-        of the nodes' shape functions
-            at the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what
-            forces add to the gaps beside what the body yields, and softness_along what tangential
-            ones add to the slips; None: nothing.
-        condensed: (nc,) ascending equation numbers.
+    Attributes
+    ----------
+    nodes
+        (nn,) node numbers.
+    equation
+        (n, 2) equations of all nodes.
+    shape
+        (nz, nn) values of the nodes' shape functions at the points; None where the points are the
+        nodes.
+    softness
+        (nz, nz) m^2/N, what forces add to the gaps beside what the body yields, and softness_along
+        what tangential ones add to the slips; None: nothing.
+    condensed
+        (nc,) ascending equation numbers.
     """
 
     nodes: np.ndarray
@@ -144,12 +151,21 @@ class Zone:
 class Rows:
     """The constraints of a contact problem.
 
-    Attributes:
-        zone: whose points are those of the rows. place: (nr,) or slice, where the stepper keeps
-        what belongs to them: by the
-            number of the skin's point, and for a second side that many points further on. partner:
-            (nr,) the row of the same point's other side or -1; None where no point has two. gap:
-            (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
+    Attributes
+    ----------
+    zone
+        Whose points are those of the rows.
+    place
+        (nr,) or slice, where the stepper keeps what belongs to them: by the number of the skin's
+        point, and for a second side that many points further on.
+    partner
+        (nr,) the row of the same point's other side or -1; None where no point has two.
+    gap
+        (nr,) m.
+    gradient
+        (nr, 2).
+    curvature
+        (nr,) 1/m.
     """
 
     zone: Zone
@@ -237,10 +253,15 @@ def _inverse(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
 class Flexibility:
     """How a zone yields once the body has been condensed away.
 
-    Attributes:
-        matrix: (nc, nc) Schur complement with the geometric term of the gaps. inverse: of it.
-        definite: is it positive definite? border: (nc,) and corner, what that term adds where the
-        profile's depth comes in; None where there is no such term.
+    Attributes
+    ----------
+    matrix
+        (nc, nc) Schur complement with the geometric term of the gaps.
+    inverse
+        Of it.
+    definite
+        Is it positive definite? border: (nc,) and corner, what that term adds where the profile's
+        depth comes in; None where there is no such term.
     """
 
     matrix: np.ndarray
@@ -276,9 +297,14 @@ class Response:
     degrees of freedom by
     :meth:`displacement`.
 
-    Attributes:
-        compliance: (nr, nr). free, lever: (nr,). corner, load_shift: the depth's own equation
-        ``load = load_shift - lever @ m + corner * dd``.
+    Attributes
+    ----------
+    compliance
+        (nr, nr).
+    free, lever
+        (nr,).
+    corner, load_shift
+        The depth's own equation ``load = load_shift - lever @ m + corner * dd``.
     """
 
     compliance: np.ndarray
@@ -306,10 +332,13 @@ def respond(
 ) -> Response:
     """Response of the zone to forces on its points.
 
-    Args:
-        right: as in :func:`solve_contact`. directions: of (nz, 2) unit vectors, each giving nz
-        rows: the normals, and the
-            tangents where there is friction.
+    Parameters
+    ----------
+    right
+        As in :func:`solve_contact`.
+    directions
+        Of (nz, 2) unit vectors, each giving nz rows: the normals, and the tangents where there is
+        friction.
     """
     inverse, corner = flexible.inverse, flexible.corner
     lever = np.concatenate([direction[:, 1] for direction in directions])
@@ -345,8 +374,10 @@ def until_stable(
     now; and as long as that has no stable solution, with less and less of what makes it unstable.
     Arguments as in :func:`solve_contact`.
 
-    Raises:
-        ContactError: of the attempt, when there is nothing to soften.
+    Raises
+    ------
+    ContactError
+        Of the attempt, when there is nothing to soften.
     """
     before, softened = flexible, False
     while True:
@@ -442,11 +473,13 @@ def pressing_stiffness(
     """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields
     to no force.
 
-    Args:
-        system: (k, k) m^2/N compliance of the ``rows`` (k,) that have multipliers of their own.
-        share: (nz,) of the normal ones
-            that the tangential ones, in the second half of the rows, are; None where there are no
-            tangential ones.
+    Parameters
+    ----------
+    system
+        (k, k) m^2/N compliance of the ``rows`` (k,) that have multipliers of their own.
+    share
+        (nz,) of the normal ones that the tangential ones, in the second half of the rows, are; None
+        where there are no tangential ones.
     """
     if not len(rows):
         return 0.0

@@ -41,13 +41,26 @@ _RULES = {
 class ContactPoints:
     """Points of the skin, from left to right.
 
-    Attributes:
-        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among
-        the skin's. values, slopes:
-            (n, k) shape functions and their derivatives. weight: (n,) of the edge's parameter from
-            -1 to 1. node: (n,) the nearest of the skin's, to which what is at a point is put down.
-            spacing: (n,) m, of the unloaded skin, which the points share. per_edge: how many an
-            edge has. softness: (n,) m^3/Pa. mirrored: does the skin begin at a symmetry axis?
+    Attributes
+    ----------
+    nodes
+        (n, k) of the edge that each is on, among all nodes.
+    along
+        (n, k) the same, among the skin's.
+    values, slopes
+        (n, k) shape functions and their derivatives.
+    weight
+        (n,) of the edge's parameter from -1 to 1.
+    node
+        (n,) the nearest of the skin's, to which what is at a point is put down.
+    spacing
+        (n,) m, of the unloaded skin, which the points share.
+    per_edge
+        How many an edge has.
+    softness
+        (n,) m^3/Pa.
+    mirrored
+        Does the skin begin at a symmetry axis?.
     """
 
     nodes: np.ndarray
@@ -73,11 +86,19 @@ class ContactPoints:
     ) -> ContactPoints:
         """Those of the skin.
 
-        Args:
-            points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its
-            edges (start, end[, middle]).
-                shear: (m,) Pa, long-term shear moduli of the skin at them. mirrored: does the skin
-                begin at a symmetry axis? convexity: 1/m, largest curvature of what presses on it.
+        Parameters
+        ----------
+        points
+            (n, 2) m, all nodes.
+        chain
+            (ns,) the skin's in order.
+        edges
+            (m, 2 or 3) its edges (start, end[, middle]).
+        shear
+            (m,) Pa, long-term shear moduli of the skin at them.
+        mirrored
+            Does the skin begin at a symmetry axis? convexity: 1/m, largest curvature of what
+            presses on it.
         """
         order = edges.shape[1] - 1
         place = np.full(len(points), -1)

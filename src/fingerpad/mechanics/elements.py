@@ -31,12 +31,21 @@ from fingerpad.specimen.element_kinds import KINDS
 class ReferenceElement:
     """One element on its reference cell.
 
-    Attributes:
-        name: key in :data:`ELEMENTS`. kind: of its displacement, key in
-        :data:`fingerpad.specimen.element_kinds.KINDS`. points: (nq, 2) quadrature points;
-        ``weights``: (nq,). values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with
-        respect to the reference coordinates. pressure_modes: 1, 3, or nq (pointwise). nodes: (nen,
-        2) reference coordinates of the nodes.
+    Attributes
+    ----------
+    name
+        Key in :data:`ELEMENTS`.
+    kind
+        Of its displacement, key in :data:`fingerpad.specimen.element_kinds.KINDS`.
+    points
+        (nq, 2) quadrature points; ``weights``: (nq,).
+    values
+        (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the reference
+        coordinates.
+    pressure_modes
+        1, 3, or nq (pointwise).
+    nodes
+        (nen, 2) reference coordinates of the nodes.
     """
 
     name: str

@@ -25,19 +25,31 @@ from fingerpad.specimen.materials import Prony
 
 
 class FiniteStrainBody:
-    """Displacement state of a body and the verbs the stepping needs.
+    """Displacement state of a body, and what the stepping asks of it.
 
-    Args:
-        space: the discretised mesh. shear, bulk: (ne,) long-term shear and bulk moduli, Pa. prony:
-        None leaves viscoelasticity out altogether. pointwise: volumetric modulus in units of
-        ``shear`` that is not projected on the pressure modes; a few of them keep
-            elements under an edge from folding, where det F varies wildly within one element. None
-            leaves it out.
-        laws: what the elements answer to a change of shape; None: neo-Hooke. lagged: False makes
-        pressures follow displacement at once: plain Newton's method, to be held to the other.
+    Parameters
+    ----------
+    space : Space
+        The discretised mesh.
+    shear, bulk : (ne,) Pa
+        Long-term shear and bulk moduli.
+    prony : Prony, optional
+        Viscoelasticity; none without.
+    pointwise : float, optional
+        Volumetric modulus, in units of ``shear``, that is not projected on the pressure modes. A
+        few of them keep elements under an edge from folding, where det F varies much within one.
+    laws : sequence, optional
+        What the elements answer to a change of shape (default: neo-Hooke).
+    lagged : bool
+        False: pressures follow displacement at once. This is plain Newton's method, to check the
+        other.
 
-    Attributes:
-        u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
+    Attributes
+    ----------
+    u : (n, 2) m
+        Displacement.
+    smallest_jacobian : float
+        Smallest det F of the last evaluation.
     """
 
     geometrically_linear = False
@@ -277,9 +289,18 @@ def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
 def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.ndarray:
     """Isochoric second Piola-Kirchhoff stress (np, 4) at points: 11, 22, 12, 33, Pa.
 
-    Args:
-        laws: at the points. u: (n, 2) m. cells: (np, nen). grad: (np, nen, 2) 1/m. shear: (np,)
-        long-term moduli, Pa.
+    Parameters
+    ----------
+    laws
+        At the points.
+    u
+        (n, 2) m.
+    cells
+        (np, nen).
+    grad
+        (np, nen, 2) 1/m.
+    shear
+        (np,) long-term moduli, Pa.
     """
     out = np.empty((len(cells), 4))
     for part in laws:

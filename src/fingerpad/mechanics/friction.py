@@ -39,16 +39,24 @@ STICK = 0
 class Coulomb:
     """Coulomb's law with one coefficient, and the state of every point of the skin.
 
-    Args:
-        coefficient: of friction. count: number of places where contact may be: points of the skin,
-        twice as many where the
-            profile has valleys, on both sides of which a point may lean.
+    Parameters
+    ----------
+    coefficient : float
+        Of friction.
+    count : int
+        Number of places where contact may be: points of the skin, twice as many where the profile
+        has valleys, on both sides of which a point may lean.
 
-    Attributes:
-        tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1.
-        slip: (count,) m since the step
-            began.
-        dissipated: J/m so far.
+    Attributes
+    ----------
+    tangential : (count,) N/m
+        Force on the skin along the tangent.
+    state : (count,)
+        0 sticks, -1 or 1 slips with the friction to that side.
+    slip : (count,) m
+        Since the step began.
+    dissipated : float
+        J/m so far.
     """
 
     def __init__(self, coefficient: float, count: int):

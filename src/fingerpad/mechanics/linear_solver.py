@@ -148,8 +148,10 @@ class PardisoCondensation:
         """Factorise coefficients of the pattern (nonzeros + 1,); returns the Schur complement (nc,
         nc).
 
-        Raises:
-            FactorisationError: singular to working precision.
+        Raises
+        ------
+        FactorisationError
+            Singular to working precision.
         """
         self._data = data.astype(self._real, copy=False)
         nc = len(self.condensed)

@@ -43,10 +43,16 @@ def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, 
     """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without
     contact.
 
-    Args:
-        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,)
-        m between them. mirrored: the
-            first one lies beside a symmetry axis at x = 0, beyond which the pattern continues.
+    Parameters
+    ----------
+    x
+        (n,) m, lateral position of points of the skin in order.
+    pressure
+        (n,) Pa.
+    spacing
+        (n,) m between them.
+    mirrored
+        The first one lies beside a symmetry axis at x = 0, beyond which the pattern continues.
     """
     if mirrored:
         x, pressure, spacing = (

@@ -35,22 +35,34 @@ def blocked(values: np.ndarray) -> np.ndarray:
 class Space:
     """Displacement and pressure spaces on one mesh.
 
-    Args:
-        points: (n, 2) m. cells: (ne, nen) in the order of gmsh (6-node triangles are given their
-        bubble node here). kind: "quad9", "quad4" or "tri6". element: key of ELEMENTS; None = the
-        default for the kind. fixed: (n, 2) bool, prescribed degrees of freedom.
+    Parameters
+    ----------
+    points
+        (n, 2) m.
+    cells
+        (ne, nen) in the order of gmsh (6-node triangles are given their bubble node here).
+    kind
+        "quad9", "quad4" or "tri6".
+    element
+        Key of ELEMENTS; None = the default for the kind.
+    fixed
+        (n, 2) bool, prescribed degrees of freedom.
 
-    Attributes:
-        points, cells: as used (with bubble nodes). weight (ne, nq) m^2; centres
-        (ne, 2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the
-        weight; equation (n, 2) equation number or -1; size. mesh: what the element loops read, as
-        tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first coordinate
-        before all along the second; and, in blocks of elements (:func:`blocked`), what makes
-        gradients of them (4, nq), 1/m, with 11, 12, 21, 22 of the inverse Jacobian; weight (nq);
-        pressure modes (nm, nq). sizes: nen, nq, nm.
+    Attributes
+    ----------
+    points, cells
+        As used (with bubble nodes). weight (ne, nq) m^2; centres (ne, 2) m, means of the elements'
+        nodes; psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation
+        number or -1; size. mesh: what the element loops read, as tuple: cells; gradients on the
+        reference cell (nen, 2 nq), all along its first coordinate before all along the second; and,
+        in blocks of elements (:func:`blocked`), what makes gradients of them (4, nq), 1/m, with 11,
+        12, 21, 22 of the inverse Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq,
+        nm.
 
-    Raises:
-        ValueError: an element is inverted or the element does not fit the mesh.
+    Raises
+    ------
+    ValueError
+        An element is inverted or the element does not fit the mesh.
     """
 
     def __init__(self, points, cells, kind, fixed, element=None):

@@ -126,10 +126,16 @@ class NewtonSettings:
 class Skin:
     """The part of the boundary that may touch.
 
-    Attributes:
-        nodes: (ns,) ordered along the skin. edges: (m, 2 or 3) boundary edges (start, end[,
-        middle]), body on their right. spacing: m, smallest distance of neighbouring nodes. start:
-        indices (first, last + 1) of the first contact zone.
+    Attributes
+    ----------
+    nodes
+        (ns,) ordered along the skin.
+    edges
+        (m, 2 or 3) boundary edges (start, end[, middle]), body on their right.
+    spacing
+        m, smallest distance of neighbouring nodes.
+    start
+        Indices (first, last + 1) of the first contact zone.
     """
 
     nodes: np.ndarray
@@ -208,11 +214,21 @@ def first_touch(skin: np.ndarray, profile) -> float:
 class QuasiStatic:
     """Walks a schedule of steps.
 
-    Args:
-        body: FiniteStrainBody or SmallStrainBody, unloaded. skin: where contact may happen.
-        profile: the rigid shape. observers: callables ``(body, dt)`` run after each converged
-        substep (receptors keep their own history so). external: (n, 2) dead nodal forces, N/m, or
-        None. friction: Coulomb's coefficient; None leaves friction out altogether.
+    Parameters
+    ----------
+    body
+        FiniteStrainBody or SmallStrainBody, unloaded.
+    skin
+        Where contact may happen.
+    profile
+        The rigid shape.
+    observers
+        Callables ``(body, dt)`` run after each converged substep (receptors keep their own history
+        so).
+    external
+        (n, 2) dead nodal forces, N/m, or None.
+    friction
+        Coulomb's coefficient; None leaves friction out altogether.
     """
 
     def __init__(

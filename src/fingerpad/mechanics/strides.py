@@ -228,8 +228,12 @@ class Strides:
     """Scheduled steps, those that need not be found joined to strides as long as what lies between
     allows.
 
-    Args:
-        steps: as scheduled. between: None: every step is found.
+    Parameters
+    ----------
+    steps
+        As scheduled.
+    between
+        None: every step is found.
     """
 
     def __init__(self, steps: Iterator[Step], between: Between | None = None):

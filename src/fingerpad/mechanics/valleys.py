@@ -23,10 +23,16 @@ SHARE = 0.5
 class Valleys:
     """Which points of the skin are in which valley, remembered from one look to the next.
 
-    Args:
-        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of
-        a valley within which a
-            point has two constraints. friction: Coulomb's coefficient, 0 without.
+    Parameters
+    ----------
+    profile
+        The rigid shape.
+    count
+        Number of points of the skin.
+    reach
+        m, from the corner of a valley within which a point has two constraints.
+    friction
+        Coulomb's coefficient, 0 without.
     """
 
     def __init__(self, profile, count: int, reach: float, friction: float = 0.0):
@@ -40,11 +46,15 @@ class Valleys:
         """The constraints of a zone whose points are at ``points`` (nz, 2) m in the profile's
         frame.
 
-        Args:
-            part: the zone among the skin's points. single: gap, gradient and curvature with one
-            constraint a point. kept: arrays
-                (2 ns,) of what belongs to the rows (forces, states): where a point has come into a
-                valley, or left one, they are moved to the side that it is nearest to.
+        Parameters
+        ----------
+        part
+            The zone among the skin's points.
+        single
+            Gap, gradient and curvature with one constraint a point.
+        kept
+            Arrays (2 ns,) of what belongs to the rows (forces, states): where a point has come into
+            a valley, or left one, they are moved to the side that it is nearest to.
         """
         walls = self.profile.walls(points, self.reach, self.flat)
         free = zone.movable[walls.which]  # on the mirror both sides are one

@@ -41,14 +41,22 @@ def _layers(body):
 class MaterialPoints:
     """Receptors in a body; an observer of the stepper.
 
-    Args:
-        body: the body they belong to. points: (nr, 2) undeformed positions, m. shear_instantaneous:
+    Parameters
+    ----------
+    body
+        The body they belong to.
+    points
+        (nr, 2) undeformed positions, m.
+    shear_instantaneous
         (ne,) Pa, the moduli the headline strain energy is measured with; None for a purely elastic
-            solid, whose strain energy has one meaning only. mirrored: the body is half of one that
-            is symmetric in x = 0.
+        solid, whose strain energy has one meaning only.
+    mirrored
+        The body is half of one that is symmetric in x = 0.
 
-    Raises:
-        ReceptorError: a point lies outside the mesh.
+    Raises
+    ------
+    ReceptorError
+        A point lies outside the mesh.
     """
 
     def __init__(
@@ -201,11 +209,18 @@ def strain_energies(f, strain, stress, branches, network, shear, shear_instantan
     Without instantaneous moduli (None: no viscosity at all) there is one energy, psi(C), and all
     five are it.
 
-    Args:
-        f, strain: (nr, 2, 2), in the plane. stress: (nr, 4) long-term isochoric second
-        Piola-Kirchhoff stress. branches: pairs
-            (beta, (nr, 4) stress). network, volumetric: (nr,) Pa, of shape and of volume. shear,
-            shear_instantaneous: (nr,) Pa.
+    Parameters
+    ----------
+    f, strain
+        (nr, 2, 2), in the plane.
+    stress
+        (nr, 4) long-term isochoric second Piola-Kirchhoff stress.
+    branches
+        Pairs (beta, (nr, 4) stress).
+    network, volumetric
+        (nr,) Pa, of shape and of volume.
+    shear, shear_instantaneous
+        (nr,) Pa.
     """
     total, springs = stress, 0.0
     for beta, q in branches:

@@ -48,8 +48,10 @@ def read_scene(path: str | Path) -> Written:
     """What is written of a scene, in a file of its own or as a member of a family in the same
     folder.
 
-    Raises:
-        SceneError: there is neither, a file cannot be read, or it is a family itself.
+    Raises
+    ------
+    SceneError
+        There is neither, a file cannot be read, or it is a family itself.
     """
     path = Path(path)
     home = path if is_file(path) else next(_homes(path), path)

@@ -415,13 +415,17 @@ class Scene(Strict):
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.
 
-        Args:
-            changes: dotted key -> value, such as ``{"specimen.layers.fat.youngs_modulus": "20 kPa",
-            "motion[0].rate": 0.4}``:
-                text with a unit, an SI number, or a whole part (a model, or a mapping of its keys).
+        Parameters
+        ----------
+        changes
+            Dotted key -> value, such as ``{"specimen.layers.fat.youngs_modulus": "20 kPa",
+            "motion[0].rate": 0.4}``: text with a unit, an SI number, or a whole part (a model, or a
+            mapping of its keys).
 
-        Raises:
-            SceneError: there is no such key, or the scene would be wrong; one line.
+        Raises
+        ------
+        SceneError
+            There is no such key, or the scene would be wrong; one line.
         """
         data: Any = self
         for key, value in changes.items():
@@ -442,8 +446,10 @@ class Scene(Strict):
 
         It has the outputs of that accuracy, not those asked for in each leg (``outputs.per_leg``).
 
-        Raises:
-            SceneError: it is none of these.
+        Raises
+        ------
+        SceneError
+            It is none of these.
         """
         return self.varied({"accuracy": accuracy, "outputs.per_leg": None})
 
@@ -465,8 +471,10 @@ class Scene(Strict):
 def recorded_scene(data: Mapping[str, Any]) -> Scene:
     """The scene that `Scene.canonical` described; files it named need not be there any more.
 
-    Raises:
-        SceneError: the description is not of a scene this version knows.
+    Raises
+    ------
+    SceneError
+        The description is not of a scene this version knows.
     """
     data = dict(data)
     mesh, stimulus = data["specimen"]["mesh"], data["stimulus"]

@@ -11,12 +11,17 @@ class Prony:
     """Relaxation of the shear modulus, ``G(t)/G_0 = 1 - sum_i g_i (1 - exp(-t/tau_i))`` (thesis Eq
     3-1).
 
-    Attributes:
-        g: shares of the instantaneous modulus that relax, each >= 0, sum < 1.
-        tau: their time constants, s, each > 0.
+    Attributes
+    ----------
+    g
+        Shares of the instantaneous modulus that relax, each >= 0, sum < 1.
+    tau
+        Their time constants, s, each > 0.
 
-    Raises:
-        ValueError: lengths differ, or a value is out of range.
+    Raises
+    ------
+    ValueError
+        Lengths differ, or a value is out of range.
     """
 
     g: tuple[float, ...] = ()
@@ -71,8 +76,10 @@ def moduli(
     """Long-term and instantaneous moduli of regions whose E (Pa) and nu describe one of the two
     states.
 
-    Raises:
-        ValueError: E <= 0, nu outside (-1, 1/2), or an unknown state.
+    Raises
+    ------
+    ValueError
+        E <= 0, nu outside (-1, 1/2), or an unknown state.
     """
     e, nu = np.asarray(youngs_modulus, dtype=float), np.asarray(poisson_ratio, dtype=float)
     if not (np.all(e > 0) and np.all(nu > -1) and np.all(nu < 0.5)):

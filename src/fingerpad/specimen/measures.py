@@ -77,8 +77,10 @@ def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
     """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` (m), down
     to the first gap or the base.
 
-    Raises:
-        MeshError: the skin does not cross x = 0.
+    Raises
+    ------
+    MeshError
+        The skin does not cross x = 0.
     """
     x, y = mesh.points[skin_chain(mesh)].T
     if not (x.min() <= 0 <= x.max()):
@@ -167,8 +169,10 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured
     along the skin's normal, as the layers are.
 
-    Raises:
-        MeshError: no point of that depth exists at that offset.
+    Raises
+    ------
+    MeshError
+        No point of that depth exists at that offset.
     """
     depths, offsets = np.broadcast_arrays(
         np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float)
@@ -212,8 +216,10 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as
     :func:`below_skin`.
 
-    Raises:
-        MeshError: no point of that depth exists at that offset.
+    Raises
+    ------
+    MeshError
+        No point of that depth exists at that offset.
     """
     depths, offsets = map(np.ravel, np.broadcast_arrays(depths, np.asarray(offsets, float)))
     curve = curve_of(outline)

@@ -26,14 +26,18 @@ class Curve(Profile):
     the normals beside it. The work of a query grows with the pieces near the point, at most those
     within its vertical distance from the surface, not with the length of it.
 
-    Args:
-        x, y: (m + 1,) m, ends of the pieces; x strictly increasing. curvature: (m,) 1/m, above zero
-        for arcs that bulge at the
-            skin, below zero for hollow ones, zero for lines.
+    Parameters
+    ----------
+    x, y
+        (m + 1,) m, ends of the pieces; x strictly increasing.
+    curvature
+        (m,) 1/m, above zero for arcs that bulge at the skin, below zero for hollow ones, zero for
+        lines.
 
-    Raises:
-        ValueError: x is not strictly increasing, an end piece is no line, or an arc is not
-        single-valued.
+    Raises
+    ------
+    ValueError
+        X is not strictly increasing, an end piece is no line, or an arc is not single-valued.
     """
 
     uneven = True

@@ -121,14 +121,24 @@ class Outlook(NamedTuple):
 class Leg(Strict):
     """Base of all legs.
 
-    Attributes:
-        key: its name in a scene. presses: does it press to a target, so that a programme may begin
-        with it? needs_contact: is it senseless when nothing is pressed? releases: is nothing
-        pressed after it? loads: does it deform the skin? strokes: does it rub the skin? fresh: are
-        its steps? early: share of its outputs, from the first, that need a state each. force,
-        depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or
-        "depth" on that way. speed: m/s, None for a steady leg, or one that has none; every leg says
-        it. quickest: s, that its load would take at its fastest, where that is not its duration.
+    Attributes
+    ----------
+    key
+        Its name in a scene.
+    presses
+        Does it press to a target, so that a programme may begin with it? needs_contact: is it
+        senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it
+        deform the skin? strokes: does it rub the skin? fresh: are its steps? early: share of its
+        outputs, from the first, that need a state each.
+    force, depth
+        N, m, which it presses to.
+    along
+        m, its way along the surface.
+    kept
+        "force" or "depth" on that way. speed: m/s, None for a steady leg, or one that has none;
+        every leg says it.
+    quickest
+        s, that its load would take at its fastest, where that is not its duration.
     """
 
     key: ClassVar[str]
@@ -162,9 +172,16 @@ class Leg(Strict):
         """Durations (s) of its steps and what each reaches, and the last of these durations (None:
         steady).
 
-        Args:
-            at: what is prescribed when it begins. last: s, duration of the step before. reached:
-            where the pad is. how: finely.
+        Parameters
+        ----------
+        at
+            What is prescribed when it begins.
+        last
+            s, duration of the step before.
+        reached
+            Where the pad is.
+        how
+            Finely.
         """
         raise NotImplementedError
 
@@ -594,22 +611,35 @@ def programme(
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
-    Args:
-        legs: SI, newtons. steps: per leg. contact_length: m, turns N into N/m. timed: does time
-        matter? If not, a press is load increments and a hold one step. snapshots: times (s) at
-        which a step must end. present: asked when a leg begins for what has been :class:`Reached`
-        so far, which a change between force and depth
-            control needs, and a lift; without it such a leg is taken to start from zero, and a lift
-            to end there.
-        slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
-        increments: of a steady press. Without friction its end does not depend on them. parts: into
-        how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along
-        the surface. Where
-            it is given, states need to be found only at the end of a slide and at snapshots.
-        stride: so many steps of a leg are made one, but for those that press anew. every: of a
-        press or hold that takes time, a state must be found at one of so many outputs, once the
-        early ones are over,
-            and at snapshots.
+    Parameters
+    ----------
+    legs
+        SI, newtons.
+    steps
+        Per leg.
+    contact_length
+        m, turns N into N/m.
+    timed
+        Does time matter? If not, a press is load increments and a hold one step.
+    snapshots
+        Times (s) at which a step must end.
+    present
+        Asked when a leg begins for what has been :class:`Reached` so far, which a change between
+        force and depth control needs, and a lift; without it such a leg is taken to start from
+        zero, and a lift to end there.
+    slide_step
+        m, longest step of a slide; without it a slide has ``steps`` of them.
+    increments
+        Of a steady press. Without friction its end does not depend on them.
+    parts
+        Into how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m
+        along the surface. Where it is given, states need to be found only at the end of a slide and
+        at snapshots.
+    stride
+        So many steps of a leg are made one, but for those that press anew.
+    every
+        Of a press or hold that takes time, a state must be found at one of so many outputs, once
+        the early ones are over, and at snapshots.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last, wanted = 0.0, Goal(None, None, 0.0), None, sorted(snapshots)

@@ -32,21 +32,36 @@ class Walls(NamedTuple):
 class Profile:
     """Base of all profiles, and what the planner asks of them.
 
-    Attributes:
-        symmetric: is it its own mirror image in x = 0? uneven: does its curvature change along x,
-        with flat or hollow places? edges: m, x where its own edges press; the mesh is refined
-        there. edge_radius: m, their rounding (0: sharp). singular: is there an edge at which
-        strains are large or without bound? unbounded: a true edge, at which pressure has no bound?
-        irregular: are there bumps that only a search finds? face: m, half width of a flat face that
-        presses as a whole. steepness: largest slope of the surface; without bound for shapes that
-        end beside their middle. convexity: 1/m, largest curvature with which it bulges at the skin.
-        dip: m, by which it reaches below its point at x = 0. length: m, of the surface along x from
-        x = 0; a motion must stay on it. reach: m, first and last x where there is one. known: m,
-        first and last x of measured points; contact beyond them is with a guess. smoothing: m,
-        cut-off wavelength at which a measured surface was smoothed; 0 if it was not. segments:
-        pieces of lines and arcs that it is made of, if it is. valleys: are there corners that point
-        away from the skin, in which a node may lean on both sides (see :meth:`walls`)? notes: how
-        its file was read where that had to be guessed, in words.
+    Attributes
+    ----------
+    symmetric
+        Is it its own mirror image in x = 0? uneven: does its curvature change along x, with flat or
+        hollow places? edges: m, x where its own edges press; the mesh is refined there.
+    edge_radius
+        m, their rounding (0: sharp).
+    singular
+        Is there an edge at which strains are large or without bound? unbounded: a true edge, at
+        which pressure has no bound? irregular: are there bumps that only a search finds? face: m,
+        half width of a flat face that presses as a whole.
+    steepness
+        Largest slope of the surface; without bound for shapes that end beside their middle.
+    convexity
+        1/m, largest curvature with which it bulges at the skin.
+    dip
+        m, by which it reaches below its point at x = 0.
+    length
+        m, of the surface along x from x = 0; a motion must stay on it.
+    reach
+        m, first and last x where there is one.
+    known
+        m, first and last x of measured points; contact beyond them is with a guess.
+    smoothing
+        m, cut-off wavelength at which a measured surface was smoothed; 0 if it was not.
+    segments
+        Pieces of lines and arcs that it is made of, if it is.
+    valleys
+        Are there corners that point away from the skin, in which a node may lean on both sides (see
+        :meth:`walls`)? notes: how its file was read where that had to be guessed, in words.
     """
 
     symmetric: ClassVar[bool] = True

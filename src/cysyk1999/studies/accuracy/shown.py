@@ -73,10 +73,16 @@ def shown(
     """One row a curve or number with an error of its own, of figures all of whose companions there
     are finer runs of.
 
-    Args:
-        figures: with their measured data. results: of
-        :func:`cysyk1999.measures.inputs.read_results`. finer: scene -> history on a mesh with edges
-        `FINER` times as long. reference: the thesis's numbers.
+    Parameters
+    ----------
+    figures
+        With their measured data.
+    results
+        Of :func:`cysyk1999.measures.inputs.read_results`.
+    finer
+        Scene -> history on a mesh with edges `FINER` times as long.
+    reference
+        The thesis's numbers.
     """
     histories, meshes, coarse = results
     truth = {scene: Finer(history, history) for scene, history in finer.items()}

@@ -146,16 +146,22 @@ def _profile_columns(table: Table) -> dict[str, tuple[int, float]]:
 class Points(Curve):
     """A single-valued profile given by samples, joined by straight lines.
 
-    Args:
-        x, y: (n,) m; x strictly increasing. The lowest point is moved to height zero. ends: what is
-        beyond the first and the last sample: nothing ("open"), a "level" surface at their heights,
-        or the "slope"
-            of the lines there, for ever. smooth: "auto", "none" or a cut-off wavelength, m (see
-            :meth:`felt`).
-        rounding: m, radius with which open ends turn away from the skin.
+    Parameters
+    ----------
+    x, y
+        (n,) m; x strictly increasing. The lowest point is moved to height zero.
+    ends
+        What is beyond the first and the last sample: nothing ("open"), a "level" surface at their
+        heights, or the "slope" of the lines there, for ever.
+    smooth
+        "auto", "none" or a cut-off wavelength, m (see :meth:`felt`).
+    rounding
+        m, radius with which open ends turn away from the skin.
 
-    Raises:
-        ValueError: fewer than two samples or x not strictly increasing.
+    Raises
+    ------
+    ValueError
+        Fewer than two samples or x not strictly increasing.
     """
 
     irregular = True
