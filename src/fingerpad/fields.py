@@ -197,6 +197,8 @@ def _tidy(schema: Any) -> Any:
         for key, value in schema.items()
         if key != "title" and (key != "default" or isinstance(value, str))
     }
+    if isinstance(text := tidy.get("description"), str):
+        tidy["description"] = text.split("\n\nExamples\n")[0]
     if "const" in tidy.get("properties", {}).get("shape", {}):
         tidy["required"] = ["shape", *tidy.get("required", [])]
     return tidy

@@ -9,9 +9,25 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent
 
 
+BESIDE_A_RUN = ("__main__.py", "cli.py", "reference_solutions", "sweeps")
+"""What a simulation does not use, or only its plan, which is kept with its result."""
+
+
 @cache
-def code_digest(folder: Path = PACKAGE) -> str:
+def code_digest(folder: Path = PACKAGE, without: tuple[str, ...] = ()) -> str:
     """SHA-256 of the names and contents of all Python files in a folder, wherever the folder lies.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder (default: this package).
+    without : tuple of str
+        Files and folders, by the first part of their path, that are left out.
+
+    Returns
+    -------
+    str
+        64 hexadecimal digits.
 
     Examples
     --------
@@ -19,7 +35,8 @@ def code_digest(folder: Path = PACKAGE) -> str:
     64
     """
     whole = hashlib.sha256()
-    for path in sorted(folder.rglob("*.py")):
+    paths = (p for p in folder.rglob("*.py") if p.relative_to(folder).parts[0] not in without)
+    for path in sorted(paths):
         content = hashlib.sha256(path.read_bytes()).hexdigest()
         whole.update(f"{path.relative_to(folder).as_posix()}\0{content}\n".encode())
     return whole.hexdigest()

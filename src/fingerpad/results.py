@@ -25,7 +25,7 @@ from scipy.spatial import KDTree
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.planning.plan_data import Plan
 from fingerpad.processes import threads
-from fingerpad.provenance import code_digest
+from fingerpad.provenance import BESIDE_A_RUN, code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.stimuli.motion import NO_TIME
@@ -222,7 +222,7 @@ def add_snapshots(
 def provenance() -> dict[str, Any]:
     """What produced a result: code digest, package versions, machine and threads."""
     return {
-        "code_sha256": code_digest()[:16],
+        "code_sha256": code_digest(without=BESIDE_A_RUN)[:16],
         "python": platform.python_version(),
         "packages": {name: _version(name) for name in _PACKAGES},
         "machine": f"{platform.system()} {platform.machine()}",
