@@ -521,6 +521,7 @@ FIGURES = (
             each=True,
             set={"xticks": [-10, -5, 0, 5, 10]},
             share={"sharey": True},
+            extra=one_bracket,
         ),
         rows=deflections,
         measured="surface_profiles",

@@ -89,7 +89,7 @@ SOLID, DASHED, DOTTED, DASH_DOT, LONG = (
     (0, (8, 2)),
 )
 LINES = (SOLID, DASHED, DOTTED, DASH_DOT, LONG, (0, (2.5, 1)))
-MARKERS = "os^Dv<>P"
+MARKERS = "os^Dv<>PXh"
 Look = Mapping[str, object]
 
 # --- what colours mean ----------------------------------------------------------------------------
