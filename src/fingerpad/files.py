@@ -16,10 +16,7 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache
 from pathlib import Path
-
-from platformdirs import user_cache_path
 
 _PACKAGE = Path(__file__).resolve().parent
 BUILT_IN = (
@@ -144,17 +141,6 @@ def unusable(path: Path) -> str:
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, whole or not at all."""
     write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8"))
-
-
-@cache
-def cache_folder(name: str) -> Path | None:
-    """A folder of the user's cache; None where there is none that can be written."""
-    try:
-        folder = user_cache_path("fingerpad", ensure_exists=True) / name
-        folder.mkdir(exist_ok=True)
-    except (OSError, RuntimeError):  # the latter of a user without a home
-        return None
-    return folder if os.access(folder, os.W_OK) else None
 
 
 @contextlib.contextmanager
