@@ -112,7 +112,7 @@ pad: $(INSTALLED)
 	cp results/thesis/reconstruction/bands.csv config/reference/reconstruction_bands.csv
 
 schemas: $(INSTALLED)
-	$(BIN)/python -m cysyk1999.config schemas
+	$(BIN)/python -m cysyk1999.workflow.schemas
 
 adopt: $(INSTALLED)
 	$(SNAKEMAKE) --touch

@@ -27,7 +27,7 @@ from snakemake.utils import min_version
 from cysyk1999.config import read_config
 from fingerpad.documents import SceneError
 from cysyk1999.workflow.lock import take_over
-from cysyk1999.workflow.project import Project
+from cysyk1999.project import Project
 
 min_version("9.3")
 

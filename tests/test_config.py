@@ -9,7 +9,8 @@ import pytest
 import yaml
 from pydantic import ValidationError
 
-from cysyk1999.config import WorkflowConfig, read_config, schemas, write_schemas
+from cysyk1999.config import WorkflowConfig, read_config
+from cysyk1999.workflow.schemas import schemas, write_schemas
 from fingerpad.documents import SceneError
 from fingerpad.scenes.families import read_scene
 

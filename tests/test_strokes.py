@@ -161,7 +161,10 @@ def test_curvature_is_scaled_to_the_pressure_in_contact(slow):
 @pytest.mark.parametrize("shift", [1.2e-3, -0.4e-3, 0.0])
 def test_lag_recovers_a_shift(shift):
     x = np.arange(0, 50e-3, 0.25e-3)
-    bumps = lambda at: np.exp(-(((at - 20e-3) / 2e-3) ** 2)) + np.exp(-(((at - 31e-3) / 1e-3) ** 2))  # noqa: E731
+
+    def bumps(at):
+        return np.exp(-(((at - 20e-3) / 2e-3) ** 2)) + np.exp(-(((at - 31e-3) / 1e-3) ** 2))
+
     found, likeness = st.lag(x, bumps(x - shift), x[::4], bumps(x[::4]))
     assert found == pytest.approx(shift, abs=0.03e-3) and likeness > 0.99
 

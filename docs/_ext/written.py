@@ -15,8 +15,8 @@ from pathlib import Path
 from PIL import Image
 from published import ROOT, verdict
 
-from cysyk1999.config import schemas
 from cysyk1999.figures.registry import FIGURES
+from cysyk1999.workflow.schemas import schemas
 from fingerpad import cli
 from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 

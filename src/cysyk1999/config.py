@@ -1,16 +1,11 @@
 """The typed model of a workflow configuration, and the JSON schemas of everything a user writes in
 YAML.
-
-``python -m cysyk1999.config schemas`` writes ``workflow/schemas/*.schema.json``; the first line of
-each YAML file under ``config/`` points an editor at its schema.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -195,37 +190,3 @@ def workflow_json_schema() -> dict[str, Any]:
     schema = WorkflowConfig.model_json_schema()
     schema["required"] = ["name", "scenes"]
     return schema | {"title": "A fingerpad workflow configuration"}
-
-
-def schemas() -> dict[str, dict]:
-    """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
-    from cysyk1999.studies.reconstruction.unknowns import unknowns_json_schema
-    from fingerpad.scenes.scene import scene_json_schema, specimen_json_schema
-    from fingerpad.sweeps.language import sweep_json_schema
-
-    dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
-    return {
-        "workflow": dialect | workflow_json_schema(),
-        "scene": scene_json_schema(),
-        "specimen": specimen_json_schema(),
-        "sweep": sweep_json_schema(),
-        "reconstruction": dialect | unknowns_json_schema(),
-    }
-
-
-def write_schemas(directory: Path) -> list[Path]:
-    """Write the schema files into `directory` and return their paths."""
-    directory.mkdir(parents=True, exist_ok=True)
-    paths = []
-    for stem, schema in schemas().items():
-        path = directory / f"{stem}.schema.json"
-        path.write_text(json.dumps(schema, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
-        paths.append(path)
-    return paths
-
-
-if __name__ == "__main__":
-    if sys.argv[1:2] != ["schemas"]:
-        sys.exit("usage: python -m cysyk1999.config schemas [DIRECTORY]")
-    for written in write_schemas(Path(*sys.argv[2:3] or ("workflow/schemas",))):
-        print(written)

@@ -16,15 +16,14 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import cysyk1999
 from cysyk1999.sources import imported_sources
 
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
-
 Files = Mapping[str, list[str]]
+Jobs = Callable[[Any], "Iterator[Job]"]
+"""The jobs of a part, from a project (`cysyk1999.project.Project`)."""
 ALL_CORES = 1000
 """Threads of a job that fills the machine; Snakemake gives it as many as there are."""
 SILENT = ("files", "scene_files", "measured", "written")
@@ -130,7 +129,7 @@ class Part:
     """Jobs that belong together; its name is a target of the workflow."""
 
     name: str
-    jobs: Callable[[Project], Iterator[Job]]
+    jobs: Jobs
     in_default: bool
     extra: str
 
@@ -157,7 +156,7 @@ def part(name: str, in_default: bool = False, extra: str = "") -> Callable:
         makes nothing, and says so.
     """
 
-    def register(jobs: Callable[[Project], Iterator[Job]]) -> Callable:
+    def register(jobs: Jobs) -> Callable:
         _PARTS[name] = Part(name, jobs, in_default, extra)
         return jobs
 

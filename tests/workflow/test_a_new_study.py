@@ -11,7 +11,7 @@ import yaml
 import cysyk1999.studies
 from cysyk1999 import job
 from cysyk1999.config import read_config
-from cysyk1999.workflow.project import Project
+from cysyk1999.project import Project
 
 pytestmark = pytest.mark.workflow
 

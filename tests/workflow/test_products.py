@@ -14,8 +14,8 @@ import yaml
 from cysyk1999.config import read_config
 from cysyk1999.figures.registry import CHAPTERS
 from cysyk1999.job import Job
+from cysyk1999.project import Project
 from cysyk1999.studies.views.frames import FRAMES
-from cysyk1999.workflow.project import Project
 from fingerpad import load_scene, plan
 from fingerpad.documents import SceneError
 from fingerpad.planning.plan import companion
@@ -383,7 +383,7 @@ def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, mo
 
 def test_an_edited_job_reruns_itself_only(thesis):
     assert thesis.rerun("src/cysyk1999/studies/ridges/frames.py") == {"ridge_data"}
-    assert not thesis.rerun("src/cysyk1999/workflow/project.py") and not thesis.rerun(
+    assert not thesis.rerun("src/cysyk1999/project.py") and not thesis.rerun(
         "src/cysyk1999/config.py"
     )
 

@@ -23,7 +23,7 @@ import pytest
 import yaml
 
 from cysyk1999.config import read_config
-from cysyk1999.workflow.project import Project
+from cysyk1999.project import Project
 from fingerpad.results import read_history
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]

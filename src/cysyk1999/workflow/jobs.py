@@ -11,9 +11,9 @@ from cysyk1999.figures.animation import animations
 from cysyk1999.figures.registry import CHAPTERS
 from cysyk1999.job import Job, digest, part, parts
 from cysyk1999.measures.table import measure
+from cysyk1999.project import COMPANIONS, TABLES, Project
 from cysyk1999.publishing.html import report_pages
 from cysyk1999.workflow.draw import draw_figures
-from cysyk1999.workflow.project import COMPANIONS, TABLES, Project
 from cysyk1999.workflow.simulate import mesh_quality, simulate, simulate_fields, summarise
 from cysyk1999.workflow.tabulate import catalogue, tables
 from fingerpad.scenes.families import moves_along

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.accuracy.belief import OUTSIDE, accuracy_belief
 from cysyk1999.studies.accuracy.drawn import CLASSES, accuracy_drawn
 from cysyk1999.studies.accuracy.edges import accuracy_edges
@@ -20,9 +20,6 @@ from cysyk1999.studies.accuracy.strokes import (
     accuracy_strokes,
     accuracy_strokes_table,
 )
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 BASE = FAMILY["210"]
 """The scene that most parts of the study vary."""

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.calibration.force import calibrate_forces
 from cysyk1999.studies.calibration.friction import calibrate_friction_job
 from cysyk1999.studies.calibration.strokes import strokes_with_friction
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.effects.picture import effects_picture
 from cysyk1999.studies.effects.run import effects_study
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 
 @part("effects")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.explanations.run import (
     PRESSED,
     READ_ONLY,
@@ -17,9 +17,6 @@ from cysyk1999.studies.explanations.run import (
     explanations_read,
     explanations_table,
 )
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 
 @part("explanations")

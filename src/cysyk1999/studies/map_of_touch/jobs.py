@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import ALL_CORES, Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.map_of_touch.picture import map_of_touch
 from cysyk1999.studies.map_of_touch.run import run_sweep
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 
 @part("map_of_touch")

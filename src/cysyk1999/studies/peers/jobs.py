@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.peers.run import peers_table
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 
 @part("peers", extra="felupe")

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.receptors.run import TABLES, receptor_tables
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 FELT = ("ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
 """Families of scenes whose rates are predicted."""

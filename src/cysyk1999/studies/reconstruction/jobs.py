@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.reconstruction.design import reconstruction_design
 from cysyk1999.studies.reconstruction.epidermis import reconstruction_epidermis
 from cysyk1999.studies.reconstruction.picture import reconstruction_pictures
 from cysyk1999.studies.reconstruction.run import reconstruction_inference
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 TABLES = ("posterior", "readings", "emulator", "recovery", "families")
 

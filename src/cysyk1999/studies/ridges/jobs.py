@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.ridges.frames import ridge_data
 from cysyk1999.studies.ridges.run import ridge_cases
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 RIDGED, OUTER = "ridged_stroke_right", ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
 HEIGHT, FRICTION = 150, 0.35

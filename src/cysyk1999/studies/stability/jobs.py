@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.stability.cases import FILES, PARTS
 from cysyk1999.studies.stability.picture import stability_picture
 from cysyk1999.studies.stability.run import stability_method
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 
 @part("stability")

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from cysyk1999.job import Job, part
+from cysyk1999.project import Project
 from cysyk1999.studies.strain_energy_meanings import strain_energy_meanings
 from cysyk1999.studies.views.frames import FRAMES
 from cysyk1999.studies.views.picture import draw_views
 from cysyk1999.studies.views.tables import table_pictures
 from fingerpad.scenes.families import moves_along
-
-if TYPE_CHECKING:
-    from cysyk1999.workflow.project import Project
 
 OF_TABLES = {"scorecard": "thesis_comparison", "candidate_stimuli": "candidate_stimuli"}
 """Picture -> the table that it is drawn of."""
