@@ -26,6 +26,8 @@ TREE = (
 COMPILED_TOO = shutil.ignore_patterns(
     "*.egg-info", "*.tmp.*", "*.pyc.*"
 )  # all but what is being written
+OF_A_NOTEBOOK = {"MPLBACKEND": "module://a_backend_that_is_not_here"}
+"""What a workflow that is started from a notebook finds in its environment."""
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
 
@@ -57,7 +59,7 @@ class Project:
         return subprocess.run(
             [sys.executable, "-m", "snakemake", *QUIET, *arguments],
             cwd=folder or self.root,
-            env=os.environ | {"PYTHONPATH": path} | self.environment | environment,
+            env=os.environ | OF_A_NOTEBOOK | {"PYTHONPATH": path} | self.environment | environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
