@@ -8,7 +8,7 @@ axis range, measured.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +44,8 @@ OTHER_PADS = "other model (pads"
 """How the source of a row of other pads begins."""
 NOTE = {"fontsize": 6.5, "color": style.GREY}
 """Of a remark in a panel."""
+BRACKET = {"color": style.GREY, "shrinkA": 0, "shrinkB": 0}
+"""Of a stretch between two bars, further than what the bars look like."""
 SURFACE = "surface"
 """Panel of the rows that hold the shape of a stroked surface."""
 
@@ -66,6 +68,23 @@ def look(name: str) -> dict[str, object]:
 def rows_of(frame: DataFrame, column: str, value: object) -> DataFrame:
     """Rows of one panel or trace, and the range rows that belong to every panel."""
     return frame[(frame[column] == value) | (frame[column].isna() & ~is_simulated(frame))]
+
+
+def from_source(frame: DataFrame, *starts: str) -> DataFrame:
+    """Rows whose source begins with a word, or with one of some."""
+    return frame[frame["source"].str.startswith(starts)]
+
+
+def simulated(frame: DataFrame) -> DataFrame:
+    """Rows that were simulated."""
+    return frame[is_simulated(frame)]
+
+
+def remark(ax: Axes, x: float, y: float, text: str, **look: object) -> None:
+    """Words at a place of a panel, in shares of its width and height; a minus stands before
+    negative numbers.
+    """
+    ax.text(x, y, text.replace("-", "−"), transform=ax.transAxes, **look)
 
 
 # --- notes ----------------------------------------------------------------------------------------
@@ -114,14 +133,14 @@ def of_lines(frame: DataFrame, lines: Lines) -> DataFrame:
     NaN in a part that is not known of one of its points; points of which none is known do not
     count.
     """
-    errors = []
+    parts, errors = list(PARTS), []
     for named, shown in lines:
-        known = frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all")
+        known = frame.dropna(subset=[shown]).dropna(subset=parts, how="all")
         for _, rows in known.groupby(named):
-            size = rows[[shown]].to_numpy(float)
-            off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size, axis=0)
-            errors.append(off / (np.linalg.norm(size) or np.inf))
-    return DataFrame(errors, columns=list(PARTS))
+            off = rows[parts].mul(rows[shown], axis=0).to_numpy()
+            size = np.linalg.norm(rows[shown]) or np.inf
+            errors.append(np.linalg.norm(off, axis=0) / size)
+    return DataFrame(errors, columns=parts)
 
 
 def error_text(frame: DataFrame, lines: Lines = ()) -> str:
@@ -151,14 +170,11 @@ def error_text(frame: DataFrame, lines: Lines = ()) -> str:
     return f"Largest error{of}: {', '.join(parts)}"
 
 
-def statement_row(
-    ids: str, words: str, condition: str, verdict: str, number: str, detail: str
-) -> dict[str, str]:
-    """A row that holds what the thesis says of a figure, and how it is here: for a figure's
-    frame.
+def statement_row(ids: str, *said: str) -> dict[str, str]:
+    """A row that holds what the thesis says of a figure, and how it is here, for a figure's frame:
+    words, condition, verdict, number and detail.
     """
-    said = " | ".join((words, condition, verdict, number, detail))
-    return {"source": f"{STATEMENT}{ids}): {said}"}
+    return {"source": f"{STATEMENT}{ids}): {' | '.join(said)}"}
 
 
 def statement(frame: DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
@@ -240,13 +256,11 @@ def draw_bands(
     One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row
     of a bar)`` is where it lies.
     """
-    ends = rows[rows["source"].astype(str).str.startswith(OTHER_PADS)]
+    ends = from_source(rows, OTHER_PADS)
     draw = ax.hlines if x else ax.vlines
-    for k in range(0, len(ends), 2):
-        first, second = ends.iloc[k], ends.iloc[k + 1]
-        colour = look(first["surface"])["color"]
-        shape = {"lw": width, "alpha": 0.35, "capstyle": "butt", "zorder": 1.5}
-        draw(place(first), first[x or y], second[x or y], color=colour, **shape)
+    shape = {"lw": width, "alpha": 0.35, "capstyle": "butt", "zorder": 1.5}
+    for (_, first), (_, second) in zip(ends[::2].iterrows(), ends[1::2].iterrows(), strict=True):
+        draw(place(first), first[x or y], second[x or y], **look(first["surface"]), **shape)
 
 
 # --- limits ---------------------------------------------------------------------------------------
@@ -270,19 +284,16 @@ def limit_axes(
     x: str | None = None,
     y: str | None = None,
     text: bool = True,
-    marked: bool = True,
 ) -> None:
     """Set the axes of some columns to the thesis's ranges, and extend them only if the data leave
     these.
 
     Where an axis is extended, the thesis's range is shaded and, with `text`, labelled (one of
     several alike panels needs it). Without a range in the frame the axis is left to the data. An
-    uncertain reading has a broken bracket. Not `marked`: the limits alone.
+    uncertain reading has a broken bracket.
     """
     across = x and _set_limits(ax, frame, x, "x")
     up = y and _set_limits(ax, frame, y, "y")
-    if not marked:
-        return
     if across and up and across.left and up.left:
         thesis_box(ax, across, up)
     elif across and across.left:
@@ -329,18 +340,16 @@ def _set_limits(ax: Axes, frame: DataFrame, column: str, axis: str) -> Range | N
 
 def _bracket(ax: Axes, up: Range, text: bool) -> None:
     """A bracket beside a vertical axis as long as the thesis's range; `text`: with its name."""
-    places = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
-    line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": style.GREY, "lw": 0.7}
-    line |= {"shrinkA": 0, "shrinkB": 0, "ls": (0, (2, 2)) if up.uncertain else "-"}
-    ax.annotate("", (1.02, up.low), (1.02, up.high), arrowprops=line, **places)
+    beside = ax.get_yaxis_transform()
+    line = BRACKET | {"arrowstyle": "|-|,widthA=.2,widthB=.2", "lw": 0.7}
+    line["ls"] = (0, (2, 2)) if up.uncertain else "-"
+    ends = (1.02, up.low), (1.02, up.high)
+    ax.annotate("", *ends, xycoords=beside, textcoords=beside, arrowprops=line)
     words = "thesis axis,\nuncertain" if up.uncertain else "thesis axis\nrange"
-    ax.annotate(
-        words if text else "?" * up.uncertain,
-        (1.03, (up.low + up.high) / 2),
-        xycoords=("axes fraction", "data"),
-        **NOTE | {"fontsize": 6, "va": "center", "multialignment": "center"},
-        **{"rotation": 90 if text else 0, "linespacing": 1.0},
-    )
+    look = {"va": "center", "multialignment": "center", "linespacing": 1.0}
+    look |= {"fontsize": 6, "rotation": 90 if text else 0, "color": style.GREY}
+    middle = (1.03, (up.low + up.high) / 2)
+    ax.annotate(words if text else "?" * up.uncertain, middle, xycoords=beside, **look)
 
 
 def _band(uncertain: bool) -> dict[str, object]:
@@ -383,21 +392,12 @@ def wide_limits(ax: Axes, rows: DataFrame, x: str, y: str) -> None:
         thesis_box(ax, *box)
 
 
-def leave_room_for_brackets(panels: Mapping[object, Axes], frame: DataFrame) -> None:
-    """Narrow the panels by what the brackets beside extended axes take, which the layout does not
-    see.
-    """
-    engine = next(iter(panels.values())).figure.get_layout_engine()
-    x, y, width, height = engine.get()["rect"]
-    engine.set(rect=(x, y, width - 0.02, height))
-
-
 def together(frame: DataFrame, columns: Sequence[str]) -> DataFrame:
     """The frame with the simulated values of all columns in the first: an axis then holds them
     all.
     """
     first, *others = columns
-    own = frame[is_simulated(frame)]
+    own = simulated(frame)
     copies = [own.assign(**{first: own[other]}) for other in others]
     return pd.concat([frame, *copies], ignore_index=True) if copies else frame
 
@@ -417,23 +417,20 @@ def draw_surface(ax: Axes, frame: DataFrame) -> None:
     top = y.max() + 0.35
     ax.fill_between(x, y, top, color=style.PALE, lw=0)
     ax.plot(x, y, color=style.INK, lw=0.9)
-    ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0])
-    ax.set_ylabel("height\n(mm)")
+    ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0], ylabel="height\n(mm)")
     ax.tick_params(labelbottom=False)
-    pieces = [
-        (piece[DISTANCE].iloc[0], piece[DISTANCE].iloc[-1], piece[CURVATURE].iloc[0])
-        for _, piece in rows.groupby((rows[CURVATURE].diff() != 0).cumsum())
-        if piece[CURVATURE].iloc[0] > 0 and len(piece) > 2
-    ]
+    piece = (rows[CURVATURE].diff() != 0).cumsum()
+    pieces = rows.groupby(piece).agg({DISTANCE: ["first", "last", "size"], CURVATURE: "first"})
+    pieces.columns = ["start", "end", "size", "curvature"]
+    pieces = pieces[(pieces["curvature"] > 0) & (pieces["size"] > 2)]
     room = 0.034 * (x[-1] - x[0])
-    start, end, _ = pieces[-1]
-    if end == x[-1] and end - start < room:  # cut off by the picture's end
-        pieces.pop()
-    middles = [(start + end) / 2 for start, end, _ in pieces]
+    cut_off = (pieces["end"] == x[-1]) & (pieces["end"] - pieces["start"] < room)
+    pieces = pieces[~cut_off]
+    middles = (pieces["start"] + pieces["end"]) / 2
     places = style.spread(middles, room, x[0] + room / 2, x[-1] - room / 2)
-    for k, (place, (*_, curvature)) in enumerate(zip(places, pieces, strict=True)):
-        text = f"{curvature:.0f}{'' if k else ' 1/m'}"
-        ax.text(place, top - 0.06, text, ha="center", va="top", fontsize=6)
+    units = [" 1/m", *[""] * len(pieces)]
+    for place, curvature, unit in zip(places, pieces["curvature"], units, strict=False):
+        ax.text(place, top - 0.06, f"{curvature:.0f}{unit}", ha="center", va="top", fontsize=6)
 
 
 def below_surface(fig: Figure, frame: DataFrame, count: int, along: bool = True) -> list[Axes]:

@@ -8,7 +8,7 @@ other or partly the same subjects, the others the model alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -51,7 +51,7 @@ from cysyk1999.measures.steady import (
     steady_force,
 )
 from cysyk1999.publishing import style
-from fingerpad.measures.features import SIMULATED, is_simulated
+from fingerpad.measures.features import SIMULATED
 
 FLAT = NINE.only(("flat",))
 STEADY_PLATE = Runs("series", {"model": PLATE})
@@ -83,6 +83,11 @@ def noted(words: str) -> Callable[[DataFrame], list[str]]:
     return note
 
 
+def with_length(history: Dataset) -> str:
+    """Source of simulated rows that tells the contact length."""
+    return f"{SIMULATED}: {LONG}{1e3 * contact_length(history):g} mm"
+
+
 def length_in(frame: DataFrame) -> float:
     """The contact length (mm) that a frame's sources tell; not a number if none does."""
     return frame["source"].str.extract(rf"{LONG}([\d.]+) mm")[0].astype(float).max()
@@ -94,7 +99,8 @@ def length_in(frame: DataFrame) -> float:
 @stacked
 def section_lines(data: Data) -> Iterator[Mapping]:
     """Closed boundaries of the section, outside to inside, named by the layer they enclose."""
-    lines = boundaries(data.meshes[FLAT["flat"]])
+    mesh = data.meshes[FLAT["flat"]]
+    lines = {name: mesh.points[nodes] for name, nodes in boundaries(mesh).items()}
     lines["stratum corneum"] = lines["skin"]
     lines["epidermis"] = inward(lines["skin"], stratum_corneum(data.histories[FLAT["flat"]]))
     for layer in LAYERS:
@@ -106,39 +112,40 @@ def three_sections(fig, frame, spec):
     """Boundaries of the section: layers, symmetry, stratum corneum."""
     axes = fig.subplots(1, 3, sharey=True)
     titles = ("layers and bone", "layers offset from the skin", "with stratum corneum")
-    lines = {layer: rows[[X, Y]].to_numpy() for layer, rows in frame.groupby("layer")}
-    top = {layer: line[:, 1].max() for layer, line in lines.items()}
     for ax, title in zip(axes, titles, strict=True):
         ax.set(title=title, aspect="equal", xlabel=X.label)
         ax.set(xlim=(-10, 10), ylim=(-8.2, 9.6), yticks=[-6, -3, 0, 3, 6])
         ax.tick_params(labelleft=True)
     axes[0].set_ylabel(Y.label)
-    fill(axes[0], {k: v for k, v in lines.items() if k != "epidermis"}, merged=True)
-    point_at_layer(axes[0], "epidermis", lines["stratum corneum"], lines["dermis"], -7.0, -7.0)
-    point_at_layer(axes[0], "dermis", lines["dermis"], lines["fat"], -1.0, -1.0)
-    axes[0].text(0, (top["fat"] + top["bone"]) / 2, "fat", **SMALL)
-    axes[0].text(0, (lines["bone"][:, 1].min() + top["bone"]) / 2, "bone", **SMALL)
-    wide, high = np.ptp(lines["stratum corneum"], axis=0)
+    layered = layer_loops(frame)
+    without = layered | {"epidermis": layered["stratum corneum"]}  # all of it as epidermis
+    skin = without.pop("stratum corneum")
+    paint(axes[0], without)
+    point_at_layer(axes[0], without, "epidermis", -7.0, -7.0)
+    point_at_layer(axes[0], without, "dermis", -1.0, -1.0)
+    name_fat_and_bone(axes[0], without)
+    wide, high = np.ptp(skin, axis=0)
     axes[0].text(0, -7.3, f"{wide:.1f} × {high:.1f} mm", **SMALL)
 
+    top = {layer: line[:, 1].max() for layer, line in layered.items()}
     thick = top["stratum corneum"] - top["dermis"], top["dermis"] - top["fat"]
-    offset_construction(axes[1], lines, thick)
+    offset_construction(axes[1], without, thick)
     text = f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\n"
     text += "dots: so far along the normals of the skin"
     axes[1].text(0, 9.3, text, **SMALL | {"va": "top"})
 
-    fill(axes[2], lines, merged=False)
+    paint(axes[2], layered)
     text = f"stratum corneum, {top['stratum corneum'] - top['epidermis']:.2f} mm"
     point_out(axes[2], text, (0, 5.85), (0, 8.3))
 
 
-def offset_construction(ax: Axes, lines: dict[str, np.ndarray], thick: tuple[float, float]) -> None:
+def offset_construction(ax: Axes, loops: dict[str, np.ndarray], thick: tuple[float, float]) -> None:
     """The boundaries, and points on the normals of the skin at the layers' thicknesses (mm), which
     lie on them.
     """
-    for layer in ("stratum corneum", "dermis", "fat", "bone"):
-        ax.plot(*lines[layer].T, color=style.INK, lw=0.8)
-    skin = densify(lines["stratum corneum"], 0.2)
+    for loop in loops.values():
+        ax.plot(*loop.T, color=style.INK, lw=0.8)
+    skin = densify(loops["epidermis"], 0.2)
     moved = [inward(skin, depth) for depth in (thick[0], sum(thick))]
     for k in range(0, len(skin) - 1, 16):
         feet = [line[k] for line in moved]
@@ -159,21 +166,33 @@ def point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, 
     ax.annotate(text, at, label, arrowprops=line, **SMALL)
 
 
+def layer_loops(rows: DataFrame, names: Sequence[str] = LAYERS) -> dict[str, np.ndarray]:
+    """Layer -> its outer boundary (n, 2) in mm, outside to inside, of rows that call them so."""
+    lines = {name: line[[X, Y]].to_numpy() for name, line in rows.groupby("layer")}
+    return {layer: lines[name] for layer, name in zip(LAYERS, names, strict=True)}
+
+
 def point_at_layer(
-    ax: Axes, name: str, outer: np.ndarray, inner: np.ndarray, x: float, at: float, y: float = 8.3
+    ax: Axes, loops: dict[str, np.ndarray], layer: str, x: float, at: float, y: float = 8.3
 ) -> None:
-    """Name a layer between two lines at `x`, at a place above."""
-    point_out(ax, name, (x, (upper(outer, x) + upper(inner, x)) / 2), (at, y))
+    """Name a layer, halfway to the next one at `x`, at a place above."""
+    names = list(loops)
+    outer, inner = loops[layer], loops[names[names.index(layer) + 1]]
+    point_out(ax, layer, (x, (upper(outer, x) + upper(inner, x)) / 2), (at, y))
 
 
-def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
-    """Paint the layers outside to inside; `merged` gives the outermost band the epidermis's
-    colour.
-    """
-    for layer in filter(lines.__contains__, LAYERS):
-        name = "epidermis" if merged and layer == "stratum corneum" else layer
-        colour = style.LAYER_COLOURS[name]
-        ax.fill(*lines[layer].T, facecolor=colour, edgecolor=style.INK, lw=0.6)
+def name_fat_and_bone(ax: Axes, loops: dict[str, np.ndarray]) -> None:
+    """Their names in the middle of each."""
+    fat, bone = loops["fat"], loops["bone"]
+    ax.text(0, (upper(fat, 0.0) + upper(bone, 0.0)) / 2, "fat", **SMALL)
+    ax.text(0, (bone[:, 1].min() + bone[:, 1].max()) / 2, "bone", **SMALL)
+
+
+def paint(ax: Axes, loops: dict[str, np.ndarray], line: float = 0.6) -> None:
+    """Paint the layers in their colours, outside to inside."""
+    for layer, loop in loops.items():
+        colour = style.LAYER_COLOURS[layer]
+        ax.fill(*loop.T, facecolor=colour, edgecolor=style.INK, lw=line)
 
 
 def shaded_mesh(ax, frame, spec):
@@ -233,60 +252,60 @@ def deflections(data: Data) -> Iterator[Mapping]:
 
 def at_depths(ax, rows, spec):
     """Simulated (lines) and measured (points), a colour a depth."""
-    simulated, handles = rows[is_simulated(rows)], []
+    simulated, handles = axs.simulated(rows), []
     panel = simulated["panel"].iloc[0]
     round_one = "cylinder" in panel
     looks = style.ordered("depth", simulated["series"])
     for name, curve in simulated.groupby("series", sort=False):
         look = looks[name]
         axs.curve(ax, curve, X, DEFLECTION, color=look["color"], ls=look["ls"], lw=1.2)
-        points = rows[~is_simulated(rows) & (rows["series"] == name)]
+        points = axs.from_source(rows, "measured")
+        points = points[points["series"] == name]
         ax.plot(points[X], points[DEFLECTION], look["marker"], color=look["color"], ms=3)
         marker = look["marker"] if round_one else ""
         handles.append(style.handle(name, **look | {"marker": marker}, ms=3))
     axs.limit_axes(ax, rows, X)
     ax.legend(handles=handles, title="depth", loc="lower left", handlelength=2.4, borderaxespad=0.1)
     words = misfit_at_the_rim(rows) if round_one else "steep walls:\nthe blade is\n0.1 mm wide"
-    ax.text(0.99, 0.03, words, transform=ax.transAxes, ha="right", fontsize=6)
+    axs.remark(ax, 0.99, 0.03, words, ha="right", fontsize=6)
 
 
 def misfit_at_the_rim(rows: DataFrame) -> str:
     """In words, how far the deepest measured profile and the model are apart at its outermost
     point.
     """
-    own = rows[is_simulated(rows)]
-    deepest = own["series"].iloc[-1]
-    points = rows[~is_simulated(rows) & (rows["series"] == deepest)].sort_values(X)
+    deepest = axs.simulated(rows)["series"].iloc[-1]
+    shown = rows[rows["series"] == deepest].sort_values(X)
+    curve, points = axs.simulated(shown), axs.from_source(shown, "measured")
     if points.empty:
         return ""
     x, y = points[[X, DEFLECTION]].iloc[-1]
-    curve = own[own["series"] == deepest].sort_values(X)
     here = np.interp(x, curve[X], curve[DEFLECTION])
-    text = f"at {x:g} mm,\n{deepest} deep:\n{y:+.2f} measured\n{here:+.2f} model"
-    return text.replace("-", "−")
+    return f"at {x:g} mm,\n{deepest} deep:\n{y:+.2f} measured\n{here:+.2f} model"
 
 
 def one_bracket(panels, frame):
     """Beside the last panel, for all."""
     for ax in list(panels.values())[:-1]:
-        for text in [t for t in ax.texts if t.get_text() in ("", "thesis axis\nrange")]:
-            text.remove()
+        for text in list(ax.texts):
+            if text.get_text() in ("", "thesis axis\nrange"):
+                text.remove()
 
 
 @stacked
 def forces_over_depth(data: Data) -> Iterator[DataFrame]:
     """Steady force against the depth of a flat plate, and the measured forces of each subject."""
-    curve = Curve(lambda h: (DEPTH.read(h), NEWTON.read(h)), outputs=False)
-    plate = data.histories[PLATE]
-    model = data.table(
-        STEADY_PLATE, lambda h: {DEPTH: DEPTH.read(h), NEWTON: NEWTON.read(h)}, curve
-    )
-    yield model.assign(source=f"{SIMULATED}: {LONG}{1e3 * contact_length(plate):g} mm")
+    def read(history: Dataset) -> dict[str, np.ndarray]:
+        return {DEPTH: DEPTH.read(history), NEWTON: NEWTON.read(history)}
+
+    curve = Curve(lambda history: tuple(read(history).values()), outputs=False)
+    model = data.table(STEADY_PLATE, read, curve)
+    yield model.assign(source=with_length(data.histories[PLATE]))
     if (rows := data.measured) is None:
         return
     rows = rows[(rows["indenter"] == "flat plate") & (rows["speed_mm_per_s"] == 0)]
     here = np.interp(rows["depth_mm"], model[DEPTH], model[NEWTON])
-    factor = float(here @ rows["force_N"] / (here @ here))
+    factor = here @ rows["force_N"] / (here @ here)
     source = f"{SIMULATED}: times {factor:.3g}, closest to the measured forces"
     fitted = {"series": "model, fitted", NEWTON: factor * model[NEWTON]}
     yield model.assign(source=source, **fitted)
@@ -300,25 +319,23 @@ def model_and_subjects(ax, frame, spec):
     model, fitted = (frame[frame["series"] == name] for name in ("model", "model, fitted"))
     long = length_in(frame)
     ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label=f"model, {LONG}{long:g} mm")
-    others = frame[~is_simulated(frame) & frame["series"].notna()]
+    others = axs.from_source(frame, "measured")
     if len(fitted):
         factor = float((fitted[NEWTON] / model[NEWTON].to_numpy()).max())
         length = f"model times {factor:.2f}: a length of {long * factor:.1f} mm, or softer"
         ax.plot(fitted[DEPTH], fitted[NEWTON], color=style.HIGHLIGHT, ls=style.DASHED, label=length)
-        ends = [others[DEPTH].min(), others[DEPTH].max()]
-        mean = [others.loc[np.isclose(others[DEPTH], at), NEWTON].mean() for at in ends]
-        over = np.interp(ends, model[DEPTH], model[NEWTON]) / mean
+        mean = others.groupby(DEPTH)[NEWTON].mean().iloc[[0, -1]]
+        over = np.interp(mean.index, model[DEPTH], model[NEWTON]) / mean
+        first, last = (f"{times:.1f} at {depth:g} mm" for depth, times in over.items())
         words = (
-            "model over the mean of the subjects: "
-            f"{over[0]:.1f} at {ends[0]:g} mm, {over[1]:.1f} at {ends[1]:g} mm.\n"
+            f"model over the mean of the subjects: {first}, {last}.\n"
             "A plane section touches as long a stretch of the finger\n"
             "at every depth; a finger touches more of it the deeper."
         )
-        ax.text(0.03, 0.55, words, transform=ax.transAxes, va="top", fontsize=6.5)
+        axs.remark(ax, 0.03, 0.55, words, va="top", fontsize=6.5)
     for name, look in style.ordered("subject", others["series"]).items():
         rows = others[others["series"] == name]
-        look = {"color": look["color"], "marker": look["marker"], "ls": "none"}
-        ax.plot(rows[DEPTH], rows[NEWTON], **look, ms=4.5, label=name)
+        ax.plot(rows[DEPTH], rows[NEWTON], **look | {"ls": "none"}, ms=4.5, label=name)
 
 
 # --- 3-8, 3-9: ramp and hold ----------------------------------------------------------------------
@@ -333,8 +350,7 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> Iterator[Mapping]:
     for series, history, coarse in data.runs(runs):
         time = history["time"].values
         shown = np.append(time[time < until * (1 - 1e-9)], until)
-        of = {"source": f"{SIMULATED}: {LONG}{1e3 * contact_length(history):g} mm"}
-        of["series"] = series
+        of = {"source": with_length(history), "series": series}
         force = {TIME: shown, NEWTON: np.interp(shown, time, force_N(history))}
         errors = curve_errors(history, coarse, over_time(force_N)).columns
         yield of | {"phase": "ramp and hold"} | force | errors
@@ -348,15 +364,15 @@ def forces_over_time(ax, frame, spec, at_curves):
     """Curves and steady levels, each with its name and peak over steady force: at the curve's end
     or in a legend.
     """
-    simulated = frame[is_simulated(frame)]
+    simulated = axs.simulated(frame)
     dashes = {"lw": 0.7, "ls": (0, (2, 2)), "color": style.GREY}
     looks = style.ordered("depth", simulated["series"])
     for name, rows in simulated.groupby("series", sort=False):
         curve, steady = (part for _, part in rows.groupby("phase"))
         ax.plot(steady[TIME], steady[NEWTON], **dashes)
         label = f"{name}: peak / steady {curve[NEWTON].max() / steady[NEWTON].iloc[0]:.2f}"
-        look = {"color": looks[name]["color"], "ls": looks[name]["ls"]}
-        axs.curve(ax, curve, TIME, NEWTON, **look, label="_" * at_curves + label)
+        look = looks[name] | {"marker": "", "label": "_" * at_curves + label}
+        axs.curve(ax, curve, TIME, NEWTON, **look)
         if at_curves:
             away = {"xytext": (-2, 5), "textcoords": "offset points", "ha": "right"}
             ax.annotate(label, curve[[TIME, NEWTON]].iloc[-1], fontsize=6.5, **away)
@@ -382,7 +398,7 @@ def held(
         TIME,
         (NEWTON,),
         thesis,
-        Panels(height=3.0, fill=fill, legend={"loc": "upper right"}),
+        Panels(3.0, fill=fill, legend={"loc": "upper right"}),
         rows=partial(ramp_and_hold, runs=runs, until=until),
         note=noted(
             "Lines: simulated, not measured. {error}. Contact length {length:g} mm; the recordings "
@@ -419,25 +435,17 @@ def sections(
 
 def shaded_section(ax, rows, spec):
     """Layers in their colours."""
-    named = {"skin": "stratum corneum", "corneum": "epidermis"}
-    for layer in LINED:
-        loop = rows[rows["layer"] == layer]
-        colour = style.LAYER_COLOURS[named.get(layer, layer)]
-        ax.fill(loop[X], loop[Y], facecolor=colour, edgecolor=style.INK, lw=0.7)
+    paint(ax, layer_loops(rows, LINED), 0.7)
     draw_indenter(ax, rows)
 
 
 def name_layers(panels, frame):
     """Names of the layers, and a scale."""
-    first, rows = panels["undeformed"], frame[frame["panel"] == "undeformed"]
-    skin, corneum, dermis, fat, bone = (
-        rows.loc[rows["layer"] == layer, [X, Y]].to_numpy() for layer in LINED
-    )
-    point_at_layer(first, "stratum corneum", skin, corneum, -5.0, -5.5, 7.0)
-    point_at_layer(first, "epidermis", corneum, dermis, 2.6, 2.86, 7.0)
-    point_at_layer(first, "dermis", dermis, fat, 5.0, 5.5, 7.0)
-    first.text(0, (upper(fat, 0.0) + upper(bone, 0.0)) / 2, "fat", **SMALL)
-    first.text(0, (bone[:, 1].min() + bone[:, 1].max()) / 2, "bone", **SMALL)
+    first, loops = panels["undeformed"], layer_loops(frame[frame["panel"] == "undeformed"], LINED)
+    point_at_layer(first, loops, "stratum corneum", -5.0, -5.5, 7.0)
+    point_at_layer(first, loops, "epidermis", 2.6, 2.86, 7.0)
+    point_at_layer(first, loops, "dermis", 5.0, 5.5, 7.0)
+    name_fat_and_bone(first, loops)
     for ax in panels.values():
         ax.plot([7.4, 9.4], [-6.2, -6.2], color=style.INK, lw=1.6, solid_capstyle="butt")
         ax.text(8.4, -6.0, "2 mm", ha="center", va="bottom", fontsize=6.5)
@@ -459,11 +467,9 @@ def boundaries_of_layers(ax, rows, spec):
 
 def name_boundaries(panels, frame):
     """Legend of the boundaries."""
-    names = ("stratum corneum to epidermis", "epidermis to dermis", "dermis to fat")
-    handles = [style.handle(name, **look) for name, look in zip(names, LINES.values(), strict=True)]
-    handles.append(style.handle("undeformed", **STATE_LINES["undeformed"]))
-    style.header_legend(panels["no load"].figure, handles, columnspacing=1.4)
-    panels["no load"].set_ylabel(Y.label)
+    names = ("stratum corneum to epidermis", "epidermis to dermis", "dermis to fat", "undeformed")
+    looks = dict(zip(names, (*LINES.values(), STATE_LINES["undeformed"]), strict=True))
+    style.header_legend(panels["no load"].figure, style.handles(looks), columnspacing=1.4)
 
 
 FIGURES = (
@@ -486,7 +492,7 @@ FIGURES = (
         (Y,),
         {X: "T039a", Y: "T040a"},
         Panels(
-            height=5.0,
+            5.0,
             fill=shaded_mesh,
             limit="",
             set={
@@ -510,15 +516,14 @@ FIGURES = (
         (DEFLECTION,),
         {X: "T059", DEFLECTION: "T058a"},
         Panels(
-            height=2.9,
+            2.9,
             by="panel",
-            names=tuple(PROFILES),
-            shape=(1, 3),
+            names=PROFILES,
+            across=3,
             fill=at_depths,
             title=above,
             limit="y",
             alike=True,
-            each=True,
             set={"xticks": [-10, -5, 0, 5, 10]},
             share={"sharey": True},
             extra=one_bracket,
@@ -537,7 +542,7 @@ FIGURES = (
         DEPTH,
         (NEWTON,),
         {DEPTH: "T063", NEWTON: "T062a"},
-        Panels(height=3.2, fill=model_and_subjects, legend={"loc": "upper left"}),
+        Panels(3.2, fill=model_and_subjects, legend={"loc": "upper left"}),
         rows=forces_over_depth,
         measured="force_depth",
         note=noted(
@@ -571,15 +576,14 @@ FIGURES = (
         (Y,),
         {},
         Panels(
-            height=3.5,
+            3.5,
             by="panel",
-            names=tuple(BAR_SECTIONS),
+            names=BAR_SECTIONS,
             extra=name_layers,
-            shape=(1, 2),
+            across=2,
             fill=shaded_section,
             limit="",
             title=above,
-            each=True,
             share={"sharey": True},
             set={
                 "aspect": "equal",
@@ -603,11 +607,10 @@ FIGURES = (
         (Y,),
         {},
         Panels(
-            height=3.3,
-            header=0.16,
+            3.3,
             by="panel",
-            names=tuple(SECTIONS),
-            shape=(2, 3),
+            names=SECTIONS,
+            across=3,
             fill=boundaries_of_layers,
             extra=name_boundaries,
             limit="",
@@ -622,7 +625,7 @@ FIGURES = (
             },
         ),
         rows=partial(
-            sections, panels=SECTIONS, layers=("corneum", "dermis", "fat", "bone"), before=True
+            sections, panels=SECTIONS, layers=LINED[1:], before=True
         ),
         note=noted(
             "Simulated, not measured. {error} (of the layers). As in the thesis, without the "

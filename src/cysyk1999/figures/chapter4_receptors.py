@@ -715,7 +715,7 @@ def of_rates(number, title, rows, layout, thesis, **options) -> Figure:
 
 def points_of(fill, **options) -> Panels:
     """One panel of points, on axes that hold all of them."""
-    return Panels(height=3.0, limit="", fill=fill, **options)
+    return Panels(3.0, limit="", fill=fill, **options)
 
 
 def from_depth(number: str, depth: float, axis: str) -> Figure:
@@ -753,7 +753,7 @@ FIGURES = (
         TIME,
         (FREQUENCY,),
         {TIME: "T091", FREQUENCY: "T090"},
-        Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}),
+        Panels(3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}),
         rows=frequencies,
     ),
     of_rates(
@@ -799,7 +799,7 @@ FIGURES = (
         TIME,
         (P, P_LAW),
         {TIME: "T155", P: "T154"},
-        Page(6.2, twelve_nodes, 0.16),
+        Page(6.2, twelve_nodes),
         rows=nodes_by_law,
     ),
     of_rates(

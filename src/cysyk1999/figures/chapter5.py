@@ -274,8 +274,7 @@ def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
         X,
         (Y, P),
         ids | {X: "T239", Y: "T239a", P: pressure},
-        Page(6.2, three_locations),
-        key="panel",
+        Page(6.2, three_locations, "panel"),
         rows=partial(locations, runs=runs),
     )
 
@@ -307,9 +306,9 @@ FIGURES = (
         (LENGTH,),
         {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
         Panels(
-            height=3.0,
+            3.0,
             names=((CURVATURE, LENGTH), (RADIUS, LENGTH)),
-            shape=(1, 2),
+            across=2,
             fill=at_ten,
             legend={"loc": "lower right"},
         ),
@@ -332,7 +331,7 @@ FIGURES = (
         (CENTRE, SCALED_CURVATURE),
         {DISTANCE: "T246", P_CENTRE: "T245"},
         Panels(
-            height=3.2,
+            3.2,
             fill=SAMPLED,
             legend={"loc": "lower right", "handlelength": 2.6},
             extra=zero_line,
@@ -347,7 +346,7 @@ FIGURES = (
         (P_CENTRE,),
         {DISTANCE: "T248", P_CENTRE: "T247"},
         Panels(
-            height=3.2,
+            3.2,
             fill=Lines(
                 looks={
                     "stepped": OTHER | {"marker": ".", "ms": 3},
@@ -366,7 +365,7 @@ FIGURES = (
         DISTANCE,
         (P_CENTRE,),
         {DISTANCE: "T248", P_CENTRE: "T250"},
-        Panels(height=3.2, legend={"loc": "upper right", "handlelength": 2.8}),
+        Panels(3.2, legend={"loc": "upper right", "handlelength": 2.8}),
         surface=(0, 50),
     ),
     Figure(
@@ -379,7 +378,6 @@ FIGURES = (
         nine(
             AT_NODES,
             5.6,
-            header=0.16,
             by="panel",
             title=above,
             extra=two_axes,
@@ -396,7 +394,7 @@ FIGURES = (
         STROKE_TIME,
         (P_CENTRE, SCALED_CURVATURE),
         {TIME: "T257", P_CENTRE: "T256"},
-        Panels(height=3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
+        Panels(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
         rows=lambda data: data.strokes(
             (TEN_RUN,), (DISTANCE, STROKE_TIME, P_CENTRE, SCALED_CURVATURE), (0, 80)
         ),
@@ -421,7 +419,7 @@ FIGURES = (
         (LATERAL,),
         {DISTANCE: "T260", LATERAL: "T266b"},
         Panels(
-            height=3.3,
+            3.3,
             limit="x",
             legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8},
             extra=from_half_a_millimetre,
@@ -436,7 +434,7 @@ FIGURES = (
         (SED,),
         {CURVATURE: "T277", SED: "T276"},
         Panels(
-            height=2.8,
+            2.8,
             legend={"loc": "upper left", "handlelength": 3},
             fill=Lines(
                 by="series",

@@ -420,10 +420,10 @@ FIGURES = (
         tuple(BURSTS),
         {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"},
         Panels(
-            height=3.0,
+            3.0,
             names=tuple((CURVATURE, y) for y in BURSTS),
             extra=rates_from_zero,
-            shape=(1, 2),
+            across=2,
             fill=Lines(by="series", looks={TEN: OWN_BURSTS}, recorded=RECORDED, bars=True),
         ),
         rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS),
@@ -438,7 +438,7 @@ FIGURES = (
         tuple(BURSTS),
         {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"},
         Panels(
-            height=3.4, names=tuple((SPEED, y) for y in BURSTS), shape=(1, 2), fill=against_velocity
+            3.4, names=tuple((SPEED, y) for y in BURSTS), across=2, fill=against_velocity
         ),
         rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS),
         measured="impulse_rates",
@@ -453,7 +453,6 @@ FIGURES = (
         {DISTANCE: "T262", SED: "T264"},
         stack(
             5.8,
-            header=0.16,
             fill=Lines(
                 by="source",
                 names={source: source.removeprefix(f"{SIMULATED}: ") for source in BY_PRESSURE},
@@ -472,17 +471,15 @@ FIGURES = (
         (BURST_TIME,),
         {CURVATURE: "T273", BURST_TIME: {series: f"T{269 + k}" for k, series in enumerate(FOUR)}},
         Panels(
-            height=4.2,
+            4.2,
             by="panel",
-            names=tuple(FOUR),
-            shape=(2, 2),
-            each=True,
+            names=FOUR,
+            across=2,
             fill=Lines(
                 by="series", looks=dict.fromkeys(FOUR, OWN_BURSTS), recorded=RECORDED, bars=True
             ),
             title=lambda ax, series: ax.set_title(f"v = {series}"),
         ),
-        key="panel",
         rows=partial(burst_rows, runs=FOUR, columns={BURST_TIME: "burst_time"}),
         measured="impulse_rates",
         joined="series",
@@ -495,7 +492,7 @@ FIGURES = (
         (IMPULSE_RATE,),
         {CURVATURE: "T275", IMPULSE_RATE: "T274"},
         Panels(
-            height=3.2,
+            3.2,
             legend={"loc": "upper left", "handlelength": 3},
             fill=Lines(
                 by="series",
@@ -522,10 +519,9 @@ FIGURES = (
         (SED, RATE, IMPULSE_RATE),
         {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
         Panels(
-            height=4.8,
+            4.8,
             names=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)),
             extra=aligned,
-            shape=(3, 1),
             fill=energy_rate_or_bars,
             marked=RATE,
             share={"sharex": True},
@@ -540,7 +536,7 @@ FIGURES = (
         STROKE_TIME,
         (IMPULSE_RATE,),
         {TIME: "T288", IMPULSE_RATE: "T287"},
-        Panels(height=3.0, fill=draw_rate, legend={"loc": "upper left"}),
+        Panels(3.0, fill=draw_rate, legend={"loc": "upper left"}),
         rows=lambda data: over_time(data, (IMPULSE_RATE, STATIC)).assign(source=PREDICTED),
         how=HOW,
     ),
@@ -552,12 +548,11 @@ FIGURES = (
         (IMPULSE_RATE.reading(None, RATE_WORDS),),
         {TIME: "T297", IMPULSE_RATE: {label: f"T{289 + k}" for k, label in enumerate(EIGHT)}},
         Panels(
-            height=6.0,
+            6.0,
             by="surface",
             names=CYLINDERS,
-            shape=(4, 2),
+            across=2,
             fill=draw_rate,
-            each=True,
             marked="none",
             title=above,
             extra=legend_of_the_first,
@@ -596,7 +591,6 @@ FIGURES = (
             fill=Lines(looks={FREQUENCY: {"lw": 1.0, "ls": "-"}}),
             extra=say_plateaus,
         ),
-        key="panel",
         rows=frequencies,
         surface=(40, 80),
     ),

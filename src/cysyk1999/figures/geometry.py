@@ -44,11 +44,11 @@ def stratum_corneum(history: Dataset) -> float:
 # --- lines ----------------------------------------------------------------------------------------
 
 
-def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
+def boundaries(mesh: PadMesh) -> dict[str, np.ndarray]:
     """Closed boundary lines: ``skin`` (with the nail side), ``dermis``, ``fat``, ``bone``.
 
-    Points (n, 2) in m, or node numbers (n,) if `as_nodes`. A layer's line is its outer boundary,
-    where it meets the layer outside it. Raises ValueError for a half mesh.
+    Node numbers (n,). A layer's line is its outer boundary, where it meets the layer outside it.
+    Raises ValueError for a half mesh.
     """
     if mesh.half:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
@@ -66,7 +66,7 @@ def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
         index = mesh.regions.index(name)
         met = (between == (index - 1, index)).all(axis=1)
         lines[name] = max(loops(_halves(sides[first[met]])), key=len)
-    return lines if as_nodes else {name: mesh.points[line] for name, line in lines.items()}
+    return lines
 
 
 def _halves(sides: np.ndarray) -> np.ndarray:
@@ -86,24 +86,20 @@ def loops(edges: np.ndarray) -> list[np.ndarray]:
         neighbours.setdefault(b, []).append(a)
     found = []
     while neighbours:
-        start = next(
-            (n for n, near in neighbours.items() if len(near) == 1), next(iter(neighbours))
-        )
-        line = [start]
-        while near := neighbours.get(line[-1]):
+        ends = [node for node, near in neighbours.items() if len(near) == 1]
+        line = [*ends, *neighbours][:1]
+        while near := neighbours[line[-1]]:
             step = near.pop()
             neighbours[step].remove(line[-1])
             line.append(step)
-        for node in set(line):
-            if not neighbours.get(node, True):
-                del neighbours[node]
+        neighbours = {node: near for node, near in neighbours.items() if near}
         found.append(np.array(line))
     return found
 
 
 def densify(line: np.ndarray, spacing: float) -> np.ndarray:
     """Points (m, 2) along a polyline (n, 2), at most `spacing` apart."""
-    length = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    length = np.append(0.0, np.cumsum(np.hypot(*np.diff(line, axis=0).T)))
     at = np.linspace(0, length[-1], int(length[-1] / spacing) + 2)
     return np.column_stack([np.interp(at, length, line[:, k]) for k in (0, 1)])
 
@@ -113,11 +109,10 @@ def inward(loop: np.ndarray, distance: float) -> np.ndarray:
     edges').
     """
     points = loop[:-1]
-    tangent = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
-    normal = np.column_stack((-tangent[:, 1], tangent[:, 0])) / np.hypot(*tangent.T)[:, None]
-    area = np.sum(
-        points[:, 0] * np.roll(points[:, 1], -1) - np.roll(points[:, 0], -1) * points[:, 1]
-    )
+    after = np.roll(points, -1, axis=0)
+    tangent = after - np.roll(points, 1, axis=0)
+    normal = tangent[:, ::-1] * (-1, 1) / np.hypot(*tangent.T)[:, None]
+    area = np.sum(points[:, 0] * after[:, 1] - after[:, 0] * points[:, 1])
     moved = points + np.sign(area) * distance * normal
     return np.vstack((moved, moved[:1]))
 
@@ -141,7 +136,7 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> DataFrame:
 
     Also the skin and the line `corneum` (m) under it, where the stratum corneum ends.
     """
-    rim = boundaries(mesh)
+    rim = {name: mesh.points[nodes] for name, nodes in boundaries(mesh).items()}
     polygons = [_outline(mesh, nodes) for nodes in mesh.cells]
     numbers = np.repeat(np.arange(len(polygons)), [len(p) for p in polygons])
     x, y = 1e3 * np.concatenate(polygons).T
@@ -160,13 +155,13 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> DataFrame:
         "smallest_edge (um)": found["smallest_edge_m"] * 1e6,
         "worst_scaled_jacobian (1)": found["worst_scaled_jacobian"],
     }
-    parts = [DataFrame(elements | {X: x.round(4), Y: y.round(4)})]
+    parts = [elements | {X: x.round(4), Y: y.round(4)}]
     for series, line in lines.items():
         of = {"series": series, "layer": "bone" if series == "rim" else "stratum corneum"}
-        parts.append(DataFrame(of | {X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3}))
-    judged = {"series": "quality", "quantity": list(values), "value": list(values.values())}
-    parts.append(DataFrame(judged))
-    return pd.concat(parts, ignore_index=True).assign(**dict.fromkeys(PARTS, np.nan))
+        parts.append(of | {X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3})
+    parts.append({"series": "quality", "quantity": list(values), "value": list(values.values())})
+    frame = pd.concat(map(DataFrame, parts), ignore_index=True)
+    return frame.assign(**dict.fromkeys(PARTS, np.nan))
 
 
 def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
@@ -187,27 +182,17 @@ def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.nda
 def draw_mesh(ax: Axes, frame: DataFrame, line: float = 0.22) -> None:
     """Elements in the colours of their layers, and the bone."""
     lines = {name: rows[[X, Y]].to_numpy() for name, rows in frame.groupby("series")}
-    layers = frame.dropna(subset="element").groupby("element")["layer"].first()
-    start = np.flatnonzero(np.diff(frame["element"].dropna()))
-    polygons = np.split(lines["element"], start + 1)
-    colours = [style.LAYER_COLOURS[layer] for layer in layers]
+    elements = frame.dropna(subset="element").groupby("element")
+    polygons = [points[[X, Y]].to_numpy() for _, points in elements]
+    colours = elements["layer"].first().map(style.LAYER_COLOURS)
     ax.fill(*lines["rim"].T, facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="none"))
-    draw_corneum(ax, lines["skin"], lines["inner"])
+    ring = Path.make_compound_path(Path(lines["skin"]), Path(lines["inner"][::-1]))
+    ax.add_patch(PathPatch(ring, fc=style.LAYER_COLOURS["stratum corneum"], ec="none"))
     edges = {"facecolors": "none", "edgecolors": "0.25", "linewidths": line}
     ax.add_collection(PolyCollection(polygons, **edges))
     if "held" in lines:
         ax.plot(*lines["held"].T, color=style.INK, lw=2.4, solid_capstyle="butt")
-
-
-def draw_corneum(ax: Axes, skin: np.ndarray, inner: np.ndarray) -> None:
-    """The stratum corneum: between the skin (n, 2) and the line its thickness below, both closed,
-    in mm.
-    """
-    colour = style.LAYER_COLOURS["stratum corneum"]
-    if len(skin) and len(inner):
-        ring = Path.make_compound_path(Path(skin), Path(inner[::-1]))
-        ax.add_patch(PathPatch(ring, facecolor=colour, edgecolor="none"))
 
 
 def layer_patches(layers: tuple[str, ...] = LAYERS) -> list:
@@ -238,7 +223,7 @@ def section(history: Dataset, depth: float, corneum: bool = False) -> dict[str, 
     moved = np.zeros_like(points)
     if depth:
         moved = history["snapshot_displacement"].values[leg_of(history, depth)]
-    nodes = boundaries(mesh, as_nodes=True)
+    nodes = boundaries(mesh)
     lines = {name: points[line] + moved[line] for name, line in nodes.items()}
     if corneum:
         inner = inward(densify(points[nodes["skin"]], 0.1e-3), stratum_corneum(history))

@@ -4,7 +4,7 @@ its picture follow.
 ::
 
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (sed(915e-6),),
-           thesis={TIME: "T189", SED: "T188"}, layout=Panels(height=3.0, fill=Lines(ends=2.62)))
+           thesis={TIME: "T189", SED: "T188"}, layout=Panels(3.0, fill=Lines(ends=2.62)))
 
 A picture is a function of its frame alone, which is published beside it. The frame of most figures
 is read by the quantities themselves (`Data.traces`); `rows` says another way, with the other
@@ -14,7 +14,7 @@ function does: `fill` in each panel, `extra` once they are drawn, or the whole `
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import wraps
 from os import PathLike
@@ -66,7 +66,6 @@ from fingerpad.measures.features import (
     Histories,
     centre_node,
     in_contact,
-    is_simulated,
     phase_indices,
     profile,
     width,
@@ -184,8 +183,8 @@ class Data:
                 yield rows[x >= 0] if half else rows
 
     def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> DataFrame:
-        """One row a run, of strokes one a convexity: curvature, numbers, the largest of their
-        errors, relative to the largest of all or to its `own`.
+        """One row a run, of strokes one a convexity: `source`, curvature, numbers, the largest of
+        their errors, relative to the largest of all or to its `own`.
         """
 
         def read(history: Dataset) -> DataFrame:
@@ -204,7 +203,7 @@ class Data:
         )
         sizes = fine.abs() if own else fine.abs().max()
         errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], sizes)
-        rows = pd.concat([at, fine, errors], axis=1).reset_index()
+        rows = pd.concat([at, fine, errors], axis=1).reset_index().assign(source=SIMULATED)
         return rows if runs.stroke else rows.drop(columns="convexity")
 
     def surface(self, scene: str, low: float, high: float) -> DataFrame:
@@ -234,28 +233,28 @@ class Data:
         `measures`: name of a measure of `cysyk1999.reference_data.read_bands` -> further cells of
         its rows; `read` makes of an end that of the column.
         """
+        if self.measured is None:
+            return DataFrame()
         rows = []
-        for band in () if self.measured is None else self.measured.itertuples():
-            if band.measure in measures:
-                words = f"that the thesis's figures do not tell apart: {band.pads:.0f})"
-                of = {"surface": band.surface, "source": f"{axs.OTHER_PADS} {words}"}
-                ends = sorted((read(band.low), read(band.high)))
-                rows += [of | measures[band.measure] | {column: end} for end in ends]
+        for band in self.measured[self.measured["measure"].isin(measures)].itertuples():
+            words = f"that the thesis's figures do not tell apart: {band.pads:.0f})"
+            of = {"surface": band.surface, "source": f"{axs.OTHER_PADS} {words}"}
+            ends = sorted((read(band.low), read(band.high)))
+            rows += [of | measures[band.measure] | {column: end} for end in ends]
         return DataFrame(rows)
 
-    def axis(self, column: str, ids: Ids, key: str) -> DataFrame:
+    def axis(self, column: str, ids: Ids, key: str = "surface") -> DataFrame:
         """Rows that mark a thesis axis range: two (its ends) for each id that the reference has,
-        `source` saying so.
+        `source` saying so; with ids by panels, `key` holds the panel.
         """
         rows = []
         for panel, id_ in (ids if isinstance(ids, Mapping) else {None: ids}).items():
-            if id_ not in self.reference.index:
-                continue
-            entry = self.reference.loc[id_]
-            doubt = ", reading uncertain" if entry["kind"] == "garbled" else ""
-            of = {} if panel is None else {key: panel}
-            of["source"] = f"thesis axis range ({id_}{doubt})"
-            rows += [of | {column: entry[end]} for end in ("low", "high")]
+            if id_ in self.reference.index:
+                entry = self.reference.loc[id_]
+                doubt = ", reading uncertain" if entry["kind"] == "garbled" else ""
+                of = {"source": f"thesis axis range ({id_}{doubt})"}
+                of |= {} if panel is None else {key: panel}
+                rows += [of | {column: entry[end]} for end in ("low", "high")]
         return DataFrame(rows)
 
 
@@ -296,13 +295,15 @@ def largest_of(
 
     pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
     """
-    parts = [
-        (100 * left * (a - b).abs() / sizes.replace(0, np.nan)).to_numpy()
-        for left, (a, b) in zip(LEFT, pairs, strict=True)
-    ]
+    parts = np.array(
+        [
+            100 * left * (a - b).abs() / sizes.replace(0, np.nan)
+            for left, (a, b) in zip(LEFT, pairs, strict=True)
+        ]
+    )
     worst = np.nansum(parts, axis=0).argmax(axis=1)
-    found = [part[np.arange(len(worst)), worst] for part in parts]
-    return DataFrame(dict(zip(PARTS, found, strict=True)), pairs[0][0].index)
+    largest = parts[:, np.arange(len(worst)), worst]
+    return DataFrame(largest.T, pairs[0][0].index, list(PARTS))
 
 
 # --- figures --------------------------------------------------------------------------------------
@@ -321,11 +322,9 @@ class Figure:
     x, y
         Quantities across and up; the frame's columns unless `rows` says otherwise.
     thesis
-        Column -> id of the thesis's axis range, or ids by the values of the column `key`.
+        Column -> id of the thesis's axis range, or ids by panels.
     layout
         Its picture: :class:`Panels`, or a :class:`Page` that a function draws.
-    key
-        Column that tells which range of the thesis belongs to which rows.
     rows
         ``rows(data)``: the rows before those of the axis ranges, where they are not the traces of
         `y` over `x`.
@@ -352,7 +351,6 @@ class Figure:
     y: tuple[Q, ...]
     thesis: Mapping[str, Ids]
     layout: Panels | Page
-    key: str = "surface"
     rows: Callable[[Data], DataFrame] | None = None
     after: Callable[[Data], DataFrame] = lambda data: DataFrame()
     surface: tuple[float, float] | None = None
@@ -407,7 +405,8 @@ class Figure:
         rows = self.rows(data) if self.rows else self.traces(data)
         if "source" not in rows:
             rows = rows.assign(source=SIMULATED)
-        marks = [data.axis(column, ids, self.key) for column, ids in self.thesis.items()]
+        by = self.layout.by or "surface"
+        marks = [data.axis(column, ids, by) for column, ids in self.thesis.items()]
         marks = [part for part in (*marks, self.after(data)) if len(part)]
         frame = without_round_off(pd.concat([rows, *marks], ignore_index=True))
         words = [column for column in TEXT_COLUMNS if column in frame]
@@ -433,9 +432,7 @@ class Figure:
             lines = axs.footnote(frame, how, wide, through)
         lines += axs.statement(frame, wide)
         with style.theme():
-            fig = style.sheet(
-                self.title, lines, page.height, self.number, page.header, width=self.width
-            )
+            fig = style.sheet(self.title, lines, page.height, self.number, width=self.width)
             page.draw(fig, frame, self)
             return style.finished(fig)
 
@@ -473,19 +470,19 @@ class Lines:
 
     def __call__(self, ax: Axes, rows: DataFrame, spec: Figure) -> None:
         """Draw the curves of some rows of a figure's frame."""
-        own, ends, order = rows[is_simulated(rows)], {}, list(self.looks)
-        curves = own.groupby(self.by or spec.all_runs[0].column, sort=False)
+        ends, order = {}, list(self.looks)
+        curves = axs.simulated(rows).groupby(self.by or spec.all_runs[0].column, sort=False)
         for name, curve in sorted(curves, key=lambda item: [*order, item[0]].index(item[0])):
+            usual = self.names.get(name, name)
             for q in spec.y:
-                told = self.names.get(name, str(name) if len(spec.y) == 1 else q)
+                label = self.names.get(q, usual if len(spec.y) == 1 else q)
                 look = axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {})
                 shown = curve if q.checked else curve.assign(**dict.fromkeys(PARTS, np.nan))
                 if q in self.hidden:
                     shown = shown.assign(**{q: shown[q].where(shown[self.hidden[q]] > 0)})
-                label = self.names.get(q) or told
                 axs.curve(ax, shown, spec.x, q, label=label, points=self.bars, **look)
-            ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
-        points = rows[rows["source"].str.startswith("measured")]
+            ends[name] = tuple(curve[[spec.x, spec.y[-1]]].iloc[-1])
+        points = axs.from_source(rows, "measured")
         if self.recorded and len(points):
             look = {"ls": "none", "marker": "x", "label": "recorded"} | self.recorded
             ax.plot(points[spec.x], points[spec.y[0]], **look)
@@ -504,8 +501,8 @@ class Phases:
 
     def __call__(self, ax: Axes, rows: DataFrame, spec: Figure) -> None:
         """Draw the curves of some rows of a figure's frame."""
-        own = rows[is_simulated(rows)]
-        curves = own.groupby(["phase", *([TIME] if TIME in own else [])])
+        own = axs.simulated(rows)
+        curves = own.groupby(["phase", *own.columns.intersection([TIME])])
         for (phase, *_), curve in sorted(curves, key=lambda item: self.order.index(item[0][0])):
             colour = axs.look(self.colour or curve["surface"].iloc[0])
             axs.curve(ax, curve, spec.x, spec.y[0], **colour | axs.PHASE_LINES[phase])
@@ -518,21 +515,21 @@ def above(ax: Axes, name: object) -> None:
 
 def inside(ax: Axes, name: object) -> None:
     """A velocity in the upper left of its panel."""
-    ax.text(0.008, 0.97, f"v = {name}", transform=ax.transAxes, va="top")
+    axs.remark(ax, 0.008, 0.97, f"v = {name}", va="top")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Panels:
     """Panels in a grid, or below the stroked surface: one a value of the column `by`, or one of all
-    rows.
+    rows. Of an odd number of rows or columns only the middle one has words on its axes.
 
     Attributes
     ----------
-    height, header
-        Of the page, and of the room left under its title (inch).
-    by, names, shape
-        Column, its values in order, rows and columns of the grid. Without `by` the names may be
-        quantities across and up, a panel each, of all rows.
+    height
+        Of the page (inch).
+    by, names, across
+        Column, its values in order, and how many panels stand side by side. Without `by` the names
+        may be quantities across and up, a panel each, of all rows.
     title
         ``title(ax, name)``: names a panel.
     fill
@@ -543,8 +540,6 @@ class Panels:
         Name of the one panel whose bracket says what it is; None: all.
     set, legend
         Arguments of ``Axes.set`` for every panel; of ``Axes.legend`` for the last one.
-    each
-        Whether all panels at the edges have words on their axes, or only the middle ones.
     share
         Whether panels in a grid share their axes, in matplotlib's words: ``sharex``, ``sharey``.
     extra
@@ -552,10 +547,9 @@ class Panels:
     """
 
     height: float
-    header: float = 0.0
     by: str = ""
-    names: Sequence = ("",)
-    shape: tuple[int, int] = (1, 1)
+    names: Collection = ("",)
+    across: int = 1
     title: Callable[[Axes, object], None] | None = None
     fill: Callable[[Axes, DataFrame, Figure], None] = Lines()
     limit: str = "xy"
@@ -563,15 +557,13 @@ class Panels:
     marked: object = None
     set: Mapping[str, object] = field(default_factory=dict)
     legend: Mapping[str, object] | None = None
-    each: bool = False
     share: Mapping[str, object] = field(default_factory=dict)
     extra: Callable[[Mapping[object, Axes], DataFrame], None] | None = None
 
     def draw(self, fig: Picture, frame: DataFrame, spec: Figure) -> None:
         """Draw the panels on a page."""
-        high, wide = self.shape
+        high, wide = len(self.names) // self.across, self.across
         if spec.surface:
-            high = len(self.names)
             axes = axs.below_surface(fig, frame, high, along=spec.x == DISTANCE)
         else:
             axes = fig.subplots(high, wide, squeeze=False, **self.share).ravel()
@@ -580,11 +572,11 @@ class Panels:
             pair, (row, column) = isinstance(name, tuple), divmod(k, wide)
             of = replace(spec, x=name[0], y=name[1:]) if pair else spec
             rows = axs.rows_of(frame, self.by, name) if self.by else frame
-            if pair or (row == high - 1 and (self.each or column == wide // 2)):
+            if pair or (row == high - 1 and (high == 1 or column in middle(wide))):
                 ax.set_xlabel(of.x.label)
-            if pair or (column == 0 and (self.each or row == high // 2)):
+            if pair or (column == 0 and row in middle(high)):
                 ax.set_ylabel(of.y[0].label)
-            limited = {"x": of.x, "y": of.y[0]} if of.y else {"x": of.x}
+            limited = {"x": of.x, "y": of.y[0]}
             within = axs.together(frame if self.alike else rows, of.y)
             text = self.marked is None or self.marked in (name, of.y[0])
             axs.limit_axes(ax, within, text=text, **{k: limited[k] for k in self.limit})
@@ -606,21 +598,30 @@ class Panels:
             self.extra(panels, frame)
 
 
+def middle(count: int) -> Sequence[int]:
+    """Which of some rows or columns have words on their axes: of an odd number the middle one, of
+    an even one all.
+    """
+    return [count // 2] if count % 2 else range(count)
+
+
 @dataclass(frozen=True)
 class Page:
-    """A picture of its own: ``draw(fig, frame, spec)`` draws it on the empty page."""
+    """A picture of its own: ``draw(fig, frame, spec)`` draws it on the empty page; `by` names the
+    column of the panels, if the thesis's axes differ between them.
+    """
 
     height: float
     draw: Callable[[Picture, DataFrame, Figure], None]
-    header: float = 0.0
+    by: str = ""
 
 
-def nine(names: Sequence, height: float, **options) -> Panels:
+def nine(names: Collection, height: float, **options) -> Panels:
     """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom
     right.
     """
     options = {"by": "surface", "title": above} | options
-    return Panels(height=height, names=names, shape=(3, 3), **options)
+    return Panels(height, names=names, across=3, **options)
 
 
 def stack(height: float, **options) -> Panels:
@@ -628,4 +629,4 @@ def stack(height: float, **options) -> Panels:
     names = tuple(f"{v} mm/s" for v in style.MEANINGS["speed (mm/s)"])
     solid = Lines(looks=dict.fromkeys(names, {"ls": "-"}))
     alike = {"by": "series", "fill": solid, "title": inside, "alike": True, "marked": "10 mm/s"}
-    return Panels(height=height, names=names, **alike | options)
+    return Panels(height, names=names, **alike | options)

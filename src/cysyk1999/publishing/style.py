@@ -16,10 +16,10 @@ from contextlib import AbstractContextManager
 from functools import wraps
 from string import ascii_lowercase
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.colors import to_hex, to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
@@ -81,13 +81,8 @@ RC = {
     "errorbar.capsize": 1.5,
 }
 
-SOLID, DASHED, DOTTED, DASH_DOT, LONG = (
-    "-",
-    (0, (4, 1.8)),
-    (0, (1, 1.4)),
-    (0, (4, 1.5, 1, 1.5)),
-    (0, (8, 2)),
-)
+SOLID, DASHED, DOTTED = "-", (0, (4, 1.8)), (0, (1, 1.4))
+DASH_DOT, LONG = (0, (4, 1.5, 1, 1.5)), (0, (8, 2))
 LINES = (SOLID, DASHED, DOTTED, DASH_DOT, LONG, (0, (2.5, 1)))
 MARKERS = "os^Dv<>PXh"
 Look = Mapping[str, object]
@@ -204,14 +199,10 @@ def curvature_colour(curvature: float) -> str:
     """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its
     logarithm between these.
     """
-    known = np.array([13.0, *(float(name) for name in COLOURS if name != "flat")])
-    channels = np.array(
-        [[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS.values()]
-    )
-    at = np.log(np.clip(curvature, known[0], known[-1]))
-    return "#" + "".join(
-        f"{round(np.interp(at, np.log(known), channel)):02x}" for channel in channels.T
-    )
+    known = np.log([13.0, *(float(name) for name in COLOURS if name != "flat")])
+    at = np.log(max(curvature, 1.0))  # np.interp stays within the ends
+    channels = to_rgba_array(list(COLOURS.values())).T
+    return to_hex([np.interp(at, known, channel) for channel in channels])
 
 
 def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
@@ -245,12 +236,6 @@ def theme() -> AbstractContextManager:
     return context(RC, after_reset=True)
 
 
-def colours(name: str, start: float, end: float, labels: Iterable[str]) -> dict[str, object]:
-    """Labels in colours evenly spaced over a part of one of matplotlib's maps."""
-    labels = list(labels)
-    return dict(zip(labels, mpl.colormaps[name](np.linspace(start, end, len(labels))), strict=True))
-
-
 def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
     """Paragraphs as lines of at most `width` characters, none of which begins with a percent
     sign.
@@ -269,49 +254,49 @@ def sheet(
     note: Sequence[str],
     height: float,
     number: str = "",
-    header: float = 0.0,
     laid_out: bool = True,
     width: float = PAGE_WIDTH,
 ) -> Figure:
     """Empty figure of a height and width (inch): title above, after the thesis's number if it has
     one, the note's lines below.
 
-    `header` (inch) leaves room under the title. Panels are laid out in between, unless the caller
-    does so (not `laid_out`).
+    Panels are laid out in between, unless the caller does so (not `laid_out`).
     """
     fig = Figure(figsize=(width, height), layout="constrained" if laid_out else None)
-    whose = f"after Cysyk 1999, Fig. {number}" if number else ""
-    aside = bool(whose) and width > 1.2 * COLUMN_WIDTH  # the title beside the number, or below it
-    titled = [title] if width > 1.2 * COLUMN_WIDTH else textwrap.wrap(title, 58)
-    lines = 1 if aside or not number else 1 + len(titled)
-    if laid_out:
-        top, bottom = (0.11 + 0.125 * lines + header) / height, (0.125 * len(note) + 0.07) / height
-        pads = {"w_pad": 0.04, "hspace": 0.04} if number else {"w_pad": 0.05}
-        fig.get_layout_engine().set(
-            rect=(0.005, bottom, 0.99, 1 - top - bottom), h_pad=0.04, **pads
-        )
-    left, place = 0.08 / width, {"y": 1 - 0.07 / height, "ha": "left", "va": "top"}
-    fig.text(left, s=whose or title, fontweight="bold", **place)
-    if aside:
-        fig.text(left + 1.66 / width, s=title, **place)
+    left, top, lines = 0.08 / width, {"y": 1 - 0.07 / height, "va": "top"}, 1
+    bold = f"after Cysyk 1999, Fig. {number}" if number else title
+    fig.text(left, s=bold, fontweight="bold", **top)
+    if number and width > 1.2 * COLUMN_WIDTH:  # the title beside the number, or below it
+        fig.text(left + 1.66 / width, s=title, **top)
     elif number:
-        fig.text(left, s="\n".join(titled), **place | {"y": 1 - 0.2 / height})
-    small = {
-        "ha": "left",
-        "va": "bottom",
-        "fontsize": NOTE_SIZE,
-        "color": GREY,
-        "linespacing": 1.35,
-    }
-    fig.text(left, 0.05 / height, "\n".join(note), **small)
+        titled = textwrap.wrap(title, 58)
+        lines += len(titled)
+        fig.text(left, s="\n".join(titled), **top | {"y": 1 - 0.2 / height})
+    if laid_out:
+        above, below = 0.11 + 0.125 * lines, 0.125 * len(note) + 0.07
+        rect = (0.005, below / height, 0.99, 1 - (above + below) / height)
+        pads = {"w_pad": 0.04, "hspace": 0.04} if number else {"w_pad": 0.05}
+        fig.get_layout_engine().set(rect=rect, h_pad=0.04, **pads)
+    small = {"fontsize": NOTE_SIZE, "color": GREY, "linespacing": 1.35}
+    fig.text(left, 0.05 / height, "\n".join(note), va="bottom", **small)
     return fig
 
 
 def study_figure(
-    title: str, note: Sequence[str], height: float, header: float = 0.0, width: float = PAGE_WIDTH
+    title: str, note: Sequence[str], height: float, width: float = PAGE_WIDTH
 ) -> Figure:
     """`sheet` of a study: a bold title, the note's paragraphs wrapped."""
-    return sheet(title, wrapped(note, note_width(width)), height, header=header, width=width)
+    return sheet(title, wrapped(note, note_width(width)), height, width=width)
+
+
+def leave_room(fig: Figure, above: float = 0.0, beside: float = 0.0) -> None:
+    """Keep the panels from what the layout does not see: so far (inch) below the title, and so far
+    from the right edge.
+    """
+    x, y, width, height = fig.get_layout_engine().get()["rect"]
+    whole_width, whole_height = fig.get_size_inches()
+    rect = (x, y, width - beside / whole_width, height - above / whole_height)
+    fig.get_layout_engine().set(rect=rect)
 
 
 class Powers(ScalarFormatter):
@@ -335,29 +320,18 @@ def finished(fig: Figure) -> Figure:
         for axis in (ax.xaxis, ax.yaxis):
             if type(axis.get_major_formatter()) is ScalarFormatter:
                 axis.set_major_formatter(Powers())
-    places: dict[tuple, Axes] = {}
-    for ax in fig.axes:
-        spec = ax.get_subplotspec()
-        if (
-            spec is not None
-            and ax.get_visible()
-            and ax.axison
-            and ax.get_label() not in ("<colorbar>", "twin")
-        ):
-            places.setdefault((id(spec.get_gridspec()), spec.num1, spec.num2), ax)
-    lettered = places.values() if 2 <= len(places) <= 26 else ()
+    panels = [
+        ax
+        for ax in fig.axes
+        if ax.get_subplotspec() is not None
+        and ax.get_visible()
+        and ax.axison
+        and ax.get_label() not in ("<colorbar>", "twin")
+    ]
+    lettered = panels if 2 <= len(panels) <= 26 else ()
+    look = {"ha": "right", "va": "baseline", "fontweight": "bold", "annotation_clip": False}
     for tag, ax in zip(ascii_lowercase, lettered, strict=False):
-        ax.annotate(
-            tag,
-            (0, 1),
-            (-4, 5),
-            "axes fraction",
-            "offset points",
-            ha="right",
-            va="baseline",
-            fontweight="bold",
-            annotation_clip=False,
-        )
+        ax.annotate(tag, (0, 1), (-4, 5), "axes fraction", "offset points", **look)
     return fig
 
 
@@ -387,7 +361,7 @@ def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.n
 
 
 def label_ends(
-    ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str = ""
+    ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str
 ) -> None:
     """Label the trace of each surface directly at `x_label` (data units), joined to its end by a
     hairline.
@@ -397,36 +371,21 @@ def label_ends(
     """
     low, high = ax.get_ylim()
     gap = (high - low) * 0.115 / _axes_height(ax)
-    labels = list(ends)
-    positions = spread(
-        [ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5)
-    )
-    for label, position in zip(labels, positions, strict=True):
-        x, y = ends[label]
-        ax.plot(
-            [x, x_label],
-            [y, position],
-            lw=0.7,
-            clip_on=False,
-            **look_of("curvature (1/m)", label, "color"),
-        )
-        ax.text(
-            x_label,
-            position,
-            f" {'flat plate' if label == 'flat' else label}",
-            va="center",
-            fontsize=6.5,
-        )
-    if heading:
-        ax.text(x_label, positions.max() + gap * 1.1, heading, va="center", ha="left", fontsize=6.5)
+    heights = [y for _, y in ends.values()]
+    positions = spread(heights, gap, low + gap * 0.4, high - gap * 1.6)
+    small = {"va": "center", "fontsize": 6.5}
+    for (label, (x, y)), position in zip(ends.items(), positions, strict=True):
+        look = look_of("curvature (1/m)", label, "color")
+        ax.plot([x, x_label], [y, position], lw=0.7, clip_on=False, **look)
+        ax.text(x_label, position, f" {'flat plate' if label == 'flat' else label}", **small)
+    ax.text(x_label, positions.max() + gap * 1.1, heading, **small)
 
 
 def _axes_height(ax: Axes) -> float:
     """Rough height of an axes in inch before the layout is solved."""
     spec = ax.get_subplotspec()
     ratios = spec.get_gridspec().get_height_ratios()
-    rows = range(spec.rowspan.start, spec.rowspan.stop)
-    share = sum(ratios[r] for r in rows) / sum(ratios)
+    share = sum(ratios[spec.rowspan.start : spec.rowspan.stop]) / sum(ratios)
     return max(0.5, (ax.figure.get_figheight() - 0.75) * share - 0.2)
 
 
@@ -440,23 +399,20 @@ def handle(label: str, **look) -> Line2D:
     return Line2D([], [], label=label, **look)
 
 
-def header_legend(fig: Figure, handles: Sequence[Line2D | Sequence[Line2D]], **kwargs) -> None:
-    """Legend in one row under the title, in the room that `sheet` left by its `header`; several
-    handles of one entry stand side by side, those that look alike as one.
+def handles(looks: Mapping[str, Look]) -> list[Line2D]:
+    """Entries of a legend: label -> what its line looks like."""
+    return [handle(label, **look) for label, look in looks.items()]
+
+
+def header_legend(
+    fig: Figure, entries: Sequence[Line2D | tuple[Line2D, ...]], room: float = 0.16, **options
+) -> None:
+    """Legend in one row under the title, for which it keeps `room` (inch); the lines of a tuple
+    stand side by side as one entry.
     """
-    entries = [
-        tuple({h.get_color(): h for h in each}.values()) if isinstance(each, list) else (each,)
-        for each in handles
-    ]
-    kwargs |= {
-        "labels": [entry[0].get_label() for entry in entries],
-        "handler_map": {tuple: HandlerTuple(None, pad=0.0)},
-    }
-    kwargs = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0} | kwargs
+    leave_room(fig, above=room)
+    labels = [(each[0] if isinstance(each, tuple) else each).get_label() for each in entries]
     place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.22 / fig.get_figheight())}
-    fig.legend(
-        handles=[entry if len(entry) > 1 else entry[0] for entry in entries],
-        ncols=len(entries),
-        **place,
-        **kwargs,
-    )
+    look = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0, "ncols": len(labels)}
+    look["handler_map"] = {tuple: HandlerTuple(None, pad=0.0)}
+    fig.legend(entries, labels, **place | look | options)

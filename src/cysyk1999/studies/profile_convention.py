@@ -50,7 +50,6 @@ def fig_convention(frame: pd.DataFrame) -> Figure:
             "the profile moves down until it touches."
         ],
         height=3.1,
-        header=0.16,
     )
     ax = fig.subplots()
     ax.fill_between(x, y, 2.3, color=style.PALE, lw=0)

@@ -136,7 +136,7 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         "Numbers beyond three lengths of the bar "
         "stand at the margin.",
     ]
-    fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)
+    fig = study_figure("The evidence, row by row", note, TALLEST)
     looks = {
         "drawn": {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6},
         CHOSEN: {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
@@ -160,7 +160,7 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         ax.set_xlabel("place in the interval, its ends at 0 and 1")
         ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
     handles = [handle(name, ls="none", **look) for name, look in reversed(looks.items())]
-    header_legend(fig, handles)
+    header_legend(fig, handles, room=0.2)
     return fig
 
 

@@ -75,9 +75,7 @@ def lines(history: xr.Dataset, snapshot: int | None, corneum: bool = False) -> p
     points, cells = history["node_position"].values, history["element_nodes"].values
     region = history["element_region"].values
     moved = 0.0 if snapshot is None else history["snapshot_displacement"].values[snapshot]
-    found = boundaries(
-        PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True
-    )
+    found = boundaries(PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True))
     loops = {name: (points + moved)[found[name]] for name in LAYER_LINES}
     if corneum:
         loops["corneum"] = inward(
