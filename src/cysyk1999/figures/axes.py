@@ -20,7 +20,7 @@ from matplotlib.patches import Rectangle
 from pandas import DataFrame, Series
 
 from cysyk1999.measures.errors import PARTS, SHOWN_ABOVE, norm, total
-from cysyk1999.measures.quantities import CURVATURE, DISTANCE, HEIGHT
+from cysyk1999.measures.quantities import CURVATURE, DISTANCE, HEIGHT, TIME
 from cysyk1999.publishing import style
 from fingerpad.measures.features import PHASES, STEADY, TOP, is_simulated
 
@@ -78,6 +78,12 @@ def from_source(frame: DataFrame, *starts: str) -> DataFrame:
 def simulated(frame: DataFrame) -> DataFrame:
     """Rows that were simulated."""
     return frame[is_simulated(frame)]
+
+
+def legs(rows: DataFrame) -> tuple[DataFrame, DataFrame]:
+    """The ramp and the hold of a trace whose time is there twice at the top of the ramp."""
+    top = int(np.flatnonzero(np.diff(rows[TIME]) == 0)[0]) + 1
+    return rows[:top], rows[top:]
 
 
 def remark(ax: Axes, x: float, y: float, text: str, **look: object) -> None:

@@ -295,6 +295,7 @@ def one_bracket(panels, frame):
 @stacked
 def forces_over_depth(data: Data) -> Iterator[DataFrame]:
     """Steady force against the depth of a flat plate, and the measured forces of each subject."""
+
     def read(history: Dataset) -> dict[str, np.ndarray]:
         return {DEPTH: DEPTH.read(history), NEWTON: NEWTON.read(history)}
 
@@ -624,9 +625,7 @@ FIGURES = (
                 "yticks": (0, 3, 6),
             },
         ),
-        rows=partial(
-            sections, panels=SECTIONS, layers=LINED[1:], before=True
-        ),
+        rows=partial(sections, panels=SECTIONS, layers=LINED[1:], before=True),
         note=noted(
             "Simulated, not measured. {error} (of the layers). As in the thesis, without the "
             "stratum corneum."

@@ -7,13 +7,13 @@ the original.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
-from pandas import DataFrame
+from pandas import DataFrame, Series
 from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
@@ -56,7 +56,6 @@ from fingerpad.measures.features import (
     SURFACES,
     TOP,
     energy_rate,
-    is_simulated,
     phase_indices,
     pressure_at,
     ramp_end,
@@ -77,7 +76,7 @@ ENERGY_AND_PRESSURE = f"strain energy density, contact pressure × {PRESSURE_SCA
 PRESSURE_IDS = {label: f"T{125 + k}" for k, label in enumerate(SURFACES)}
 
 
-def by_surface(ids: str, labels: tuple = SURFACES) -> dict:
+def by_surface(ids: str, labels: Iterable = SURFACES) -> dict:
     """Ids of the thesis's axes, one a surface (or another label) in their order."""
     return dict(zip(labels, ids.split(), strict=True))
 
@@ -113,16 +112,11 @@ def sunk(history: Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
 
 def implied_widths(data: Data) -> DataFrame:
     """The ranges of the width in the hold that the axes of Fig 4-9 imply."""
-    implied = data.axis("inverse", WIDTH_IDS, "surface")
+    implied = data.axis("inverse", WIDTH_IDS)
     if implied.empty:
         return implied
     source = implied["source"].str.replace("thesis axis range", "thesis range of Fig 4-9")
     return implied.assign(source=source, **{WIDTH: 1 / implied["inverse"]}).drop(columns="inverse")
-
-
-def energies_of_other_pads(data: Data) -> DataFrame:
-    """How far the highest strain energies of other pads differ, by depth."""
-    return data.bands(SED, {f"energy_{z}": {RECEPTOR: float(z)} for z in UM})
 
 
 def critical_distance(data: Data) -> DataFrame:
@@ -181,7 +175,7 @@ def axes_of_three(data: Data) -> DataFrame:
         "915 um": (SED, "T169 T170 T171"),
     }
     marks = [
-        data.axis(q, by_surface(each, tuple(THREE)), "surface").assign(panel=panel)
+        data.axis(q, by_surface(each, THREE)).assign(panel=panel)
         for panel, (q, each) in ids.items()
     ]
     return pd.concat(marks, ignore_index=True)
@@ -195,6 +189,13 @@ def energy_rates(data: Data) -> DataFrame:
     return data.table(NINE, read, Curve(lambda h: read(h)[: ramp_end(h) + 1].to_numpy().T))
 
 
+@stacked
+def energies(data: Data) -> Iterator[DataFrame]:
+    """Strain energy against time at nine depths."""
+    for z, um in zip(DEPTHS, UM, strict=True):
+        yield data.traces(NINE, (TIME, sed(z))).assign(**{RECEPTOR: um})
+
+
 # --- what layouts do not say ----------------------------------------------------------------------
 
 
@@ -203,7 +204,7 @@ def bars_of_the_hold(panels, frame):
     uncertain.
     """
     (ax,) = panels.values()
-    ranges = frame[frame["source"].str.startswith("thesis range of Fig 4-9")]
+    ranges = axs.from_source(frame, "thesis range of Fig 4-9")
     if ranges.empty:
         return
     side = ax.inset_axes((1.03, 0, 0.2, 1), sharey=ax)
@@ -222,12 +223,13 @@ def phase_legend(panels, frame, phases=PHASES):
     """
     names = list(frame["surface"].dropna().unique()) if "surface" in frame else [SURFACES[0]]
     some = names if len(names) < 4 else (names[0], names[len(names) // 2], names[-1])
-    handles = [
-        [style.handle(phase, **axs.look(k) | axs.PHASE_LINES[phase]) for k in some]
-        for phase in phases
-        if (frame["phase"] == phase).any()
-    ]
-    style.header_legend(next(iter(panels.values())).figure, handles)
+    entries = []
+    for phase in phases:
+        if (frame["phase"] == phase).any():
+            looks = [axs.look(name) | axs.PHASE_LINES[phase] for name in some]
+            lines = {look["color"]: style.handle(phase, **look) for look in looks}
+            entries.append(tuple(lines.values()))
+    style.header_legend(next(iter(panels.values())).figure, entries)
 
 
 def half_millimetres(panels, frame):
@@ -249,16 +251,17 @@ def bars_of_pressure(panels, frame):
     phase_legend(panels, frame)
 
 
-def beside_each_other(surface: str) -> float:
-    """Time (s) at which the bar of a surface stands, round the top of the ramp."""
-    return 0.5 + 0.03 * (SURFACES.index(surface) - 4)
-
-
 def bars_of_energy(panels, frame):
-    """The span of the highest strain energies of other pads."""
+    """The span of the highest strain energies of other pads, side by side round the top of the
+    ramp.
+    """
+
+    def time(row: Series) -> float:
+        return 0.5 + 0.03 * (SURFACES.index(row["surface"]) - 4)
+
     for z, ax in panels.items():
         rows = axs.rows_of(frame, RECEPTOR, z) if RECEPTOR in frame else frame
-        axs.draw_bands(ax, rows, None, SED, lambda row: beside_each_other(row["surface"]), 2.0)
+        axs.draw_bands(ax, rows, None, SED, time, 2.0)
 
 
 def depths_and_bars(panels, frame):
@@ -267,7 +270,8 @@ def depths_and_bars(panels, frame):
         style.handle("flat plate" if k == "flat" else f"{k} 1/m", **axs.look(k), lw=2)
         for k in SURFACES
     ]
-    style.header_legend(panels[UM[0]].figure, handles, handlelength=1.0, columnspacing=1.2)
+    spaces = {"handlelength": 1.0, "columnspacing": 1.2}
+    style.header_legend(panels[UM[0]].figure, handles, 0.18, **spaces)
     bars_of_energy(panels, frame)
 
 
@@ -286,13 +290,12 @@ def pad_titles(panels, frame):
 def mark_critical_distance(panels, frame):
     """The distance that the thesis states, as a bracket."""
     (ax,) = panels.values()
-    critical = frame.loc[frame["source"].str.startswith("distance stated"), X]
+    critical = axs.from_source(frame, "distance stated")[X]
     phase_legend(panels, frame)
     if critical.empty:
         return
     y = 0.93 * ax.get_ylim()[1]
-    ends = {"arrowstyle": "|-|,widthA=.3,widthB=.3", "color": style.GREY}
-    ends |= {"shrinkA": 0, "shrinkB": 0}
+    ends = axs.BRACKET | {"arrowstyle": "|-|,widthA=.3,widthB=.3"}
     ax.annotate("", (critical.min(), y), (critical.max(), y), arrowprops=ends)
     text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance\nstated in the thesis"
     away = {"xytext": (0, -5), "textcoords": "offset points", "ha": "right", "va": "top"}
@@ -301,9 +304,9 @@ def mark_critical_distance(panels, frame):
 
 def energy_and_pressure(panels, frame):
     """Legend of the two lines of a panel."""
-    looks = {"strain energy density": axs.FIRST, "scaled pressure": axs.SECOND}
-    handles = [style.handle(name, color=style.INK, **look) for name, look in looks.items()]
-    style.header_legend(panels["flat"].figure, handles)
+    ink = {"color": style.INK}
+    looks = {"strain energy density": axs.FIRST | ink, "scaled pressure": axs.SECOND | ink}
+    style.header_legend(panels["flat"].figure, style.handles(looks))
 
 
 def force_or_pressure(ax, frame, spec):
@@ -317,38 +320,36 @@ def force_or_pressure(ax, frame, spec):
 
 def every_node(ax, frame, spec):
     """One trace a contact node, the centre thick."""
-    rows = frame[is_simulated(frame)]
+    rows = axs.simulated(frame)
     thick, thin = axs.look("210") | {"lw": 1.8}, {"color": style.GREY, "lw": 0.7}
     for x, trace in rows.groupby(NODE):
         axs.curve(ax, trace, TIME, P, **thick if abs(x) < 1e-6 else thin)
     spacing = np.diff(np.sort(rows[NODE].unique())).mean()
     others = f"other nodes, about {spacing * 1e3:.0f} µm apart"
-    handles = [style.handle("centre node", **thick), style.handle(others, **thin)]
-    ax.legend(handles=handles, loc="upper right")
+    ax.legend(handles=style.handles({"centre node": thick, others: thin}), loc="upper right")
 
 
 def three_by_three(fig, frame, spec):
     """Pressure above, strain energy at two depths below, three surfaces across."""
     axes = fig.subplots(3, 3)
     ticks = {"flat": (-5, 0, 5), "158": (-4, -2, 0, 2, 4), "1260": (-2, 0, 2)}
-    titles = {
-        "pressure": "contact pressure (kPa)",
-        "800 um": "strain energy density (Pa)\n800 µm, epidermis",
-        "915 um": "strain energy density (Pa)\n915 µm, dermis",
+    panels = {
+        "pressure": (P, P.label),
+        "800 um": (SED, f"{SED.label}\n800 µm, epidermis"),
+        "915 um": (SED, f"{SED.label}\n915 µm, dermis"),
     }
-    for row, (panel, ylabel) in zip(axes, titles.items(), strict=True):
-        row[0].set_ylabel(ylabel)
-        y = P if panel == "pressure" else SED
-        for ax, label in zip(row, ticks, strict=True):
+    for row, (panel, (y, words)) in zip(axes, panels.items(), strict=True):
+        row[0].set_ylabel(words)
+        for ax, (label, places) in zip(row, ticks.items(), strict=True):
             rows = axs.rows_of(axs.rows_of(frame, "panel", panel), "surface", label)
             axs.limit_axes(ax, rows, y=y)
             Phases()(ax, rows, replace(spec, y=(y,)))
+            ax.set(xlim=(places[0], places[-1]), xticks=places)
             if y == P:
                 style.in_kilo(ax.yaxis)
-            ax.set(xlim=(ticks[label][0], ticks[label][-1]), xticks=ticks[label])
-    for top, bottom, label in zip(axes[0], axes[-1], ticks, strict=True):
-        top.set_title(axs.surface_name(label))
-        bottom.set_xlabel(X.label)
+                ax.set_title(axs.surface_name(label))
+    for ax in axes[-1]:
+        ax.set_xlabel(X.label)
     phase_legend({"": axes[0, 0]}, frame, (TOP, STEADY))
 
 
@@ -356,32 +357,18 @@ def legs_of_rates(ax, frame, spec):
     """Strain energy rate in the ramp, nine traces named at its top, where each jumps; of the hold
     what is above zero.
     """
-    own, ends = frame[is_simulated(frame)], {}
+    own, ends = axs.simulated(frame), {}
     for label, rows in own.groupby("surface", sort=False):
-        time, rate = rows[TIME].to_numpy(), rows[RATE].to_numpy()
-        jump = int(np.flatnonzero(np.diff(time) == 0)[0]) + 1
-        for leg in (slice(jump), slice(jump, None)):
-            if rate[leg].max() > 0.01 * own[RATE].max():
-                axs.curve(ax, rows[leg], TIME, RATE, whole=rows[:jump], **axs.look(label))
-        both = slice(jump - 1, jump + 1)
-        ax.plot(time[both], rate[both], color=style.GREY, lw=0.5, zorder=1)
-        ends[label] = (time[jump - 1], rate[jump - 1])
+        ramp, hold = axs.legs(rows)
+        for leg in (ramp, hold):
+            if leg[RATE].max() > 0.01 * own[RATE].max():
+                axs.curve(ax, leg, TIME, RATE, whole=ramp, **axs.look(label))
+        jump = pd.concat([ramp[-1:], hold[:1]])
+        ax.plot(jump[TIME], jump[RATE], color=style.GREY, lw=0.5, zorder=1)
+        ends[label] = tuple(ramp[[TIME, RATE]].iloc[-1])
     style.label_ends(ax, ends, ends["flat"][0] * 1.5, "curvature (1/m)")
     text = f"hold: rates below zero\n(to {own[RATE].min():.0f} Pa/s), off the axis"
-    place = {"transform": ax.transAxes, "ha": "right"}
-    ax.text(0.97, 0.05, text.replace("-", "−"), **place, **axs.NOTE)
-
-
-def scaled_pressure(data: Data) -> DataFrame:
-    """Traces of Fig 4-21, with the errors of the pressure before it is scaled."""
-    return data.traces(NINE, (TIME, SHOWN, P_SCALED), (SHOWN, P_CENTRE))
-
-
-@stacked
-def energies(data: Data) -> Iterator[DataFrame]:
-    """Strain energy against time at nine depths."""
-    for z, um in zip(DEPTHS, UM, strict=True):
-        yield data.traces(NINE, (TIME, sed(z))).assign(**{RECEPTOR: um})
+    axs.remark(ax, 0.97, 0.05, text, ha="right", **axs.NOTE)
 
 
 FIGURES = (
@@ -540,7 +527,7 @@ FIGURES = (
         {
             SED: by_surface(
                 "T173 T174 T175 T176 T177a T177b T178 T179",
-                tuple(k for k in SURFACES if k != "158"),
+                [k for k in SURFACES if k != "158"],
             )
         },
         nine(
@@ -551,7 +538,8 @@ FIGURES = (
             fill=Lines(looks={SED: axs.FIRST, P_SCALED: axs.SECOND}),
             extra=energy_and_pressure,
         ),
-        rows=scaled_pressure,
+        # with the errors of the pressure before it is scaled
+        rows=lambda data: data.traces(NINE, (TIME, SHOWN, P_SCALED), (SHOWN, P_CENTRE)),
     ),
     Figure(
         "4-23",
@@ -583,7 +571,7 @@ FIGURES = (
             extra=depths_and_bars,
         ),
         measured="pads",
-        after=energies_of_other_pads,
+        after=lambda data: data.bands(SED, {f"energy_{z}": {RECEPTOR: float(z)} for z in UM}),
         rows=energies,
     ),
     Figure(

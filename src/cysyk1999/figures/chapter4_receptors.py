@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from operator import itemgetter
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -118,16 +119,12 @@ def line_through(rows: DataFrame, x: str, y: str) -> DataFrame:
 
 def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> DataFrame:
     """Rates recorded under the protocol of a figure: those printed in the thesis, and a user's."""
-    if (rates := data.measured) is None:
+    if data.measured is None:
         return DataFrame()
-    same = rates[
-        (rates["receptor"] == "SA-I")
-        & (rates["species"] != "model")
-        & rates["stimulus"].isin(("flat plate", "cylinder"))
-        & (rates["force_gf"].sub(20).abs() < 0.5)
-        & (rates["ramp_gf_per_s"] == ramp)
-        & (rates["window"] == window)
-    ]
+    same = data.measured.query(
+        "receptor == 'SA-I' and species != 'model' and stimulus in ('flat plate', 'cylinder')"
+        " and abs(force_gf - 20) < 0.5 and ramp_gf_per_s == @ramp and window == @window"
+    )
     printed = {data.reference.loc[k, "low"]: k for k in PRINTED if k in data.reference.index}
     of_thesis = same["source"].str.startswith("Cysyk 1999")
     same = same[~of_thesis | same["rate_per_s"].isin(printed)]
@@ -156,15 +153,13 @@ def published(
     """
     if (rates := data.measured) is None:
         return DataFrame()
-    kinds = rates["stimulus"]
-    shaped = rates.assign(sphere=kinds == "sphere").groupby("recording")["sphere"]
-    rows = rates[
-        ((rates["species"] == "model") == model)
-        & (rates["window"] == window)
-        & (rates["receptor"] == "SA-I")
-        & ~rates["source"].str.startswith("Cysyk")
-        & (model | (kinds.isin(("sphere", "flat plate")) & shaped.transform("any")))
-    ]
+    rows = rates.query(
+        "receptor == 'SA-I' and window == @window and (species == 'model') == @model"
+    )
+    if not model:
+        of_spheres = rates.loc[rates["stimulus"] == "sphere", "recording"]
+        pressed = rows["stimulus"].isin(("sphere", "flat plate"))
+        rows = rows[pressed & rows["recording"].isin(of_spheres)]
     if force:
         rows = rows[rows["force_gf"] == force]
     source = ("other model (" if model else "measured (") + rows["source"] + ")"
@@ -177,7 +172,7 @@ def trains_and_rates(data: Data) -> Iterator[DataFrame | Mapping]:
     """Predicted impulses of four trials a surface at 150 gf/s, the force, the mean predicted rate
     in the hold, printed ones.
     """
-    numbers = data.numbers(FAST, {GIVEN_RATE: HELD}).assign(source=SIMULATED)
+    numbers = data.numbers(FAST, {GIVEN_RATE: HELD})
     plate = data.histories[FAST["flat"]]
     yield numbers.assign(panel="mean rate of the hold")
     force = {TIME: plate["time"].values, FORCE: force_gf(plate)}
@@ -210,7 +205,7 @@ def peak_and_steady(data: Data) -> tuple[DataFrame, DataFrame, DataFrame]:
     """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded
     ones of either kind.
     """
-    rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY}).assign(source=SIMULATED)
+    rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY})
     return rows, given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
 
 
@@ -246,14 +241,12 @@ def rate_and_width(data: Data) -> DataFrame:
 
     def read(history: Dataset) -> dict[str, np.ndarray]:
         held = history.isel(time=slice(ramp_end(history), None))
-        rate = THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
-        times = {TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held)}
-        return times | {IMPULSE_RATE: rate}
+        rate, _ = THESIS_RATE.terms(energy(held, RECEPTOR_DEPTH), 0.0)
+        shown = {q: q.read(held) for q in (TIME, INVERSE_WIDTH)}
+        return shown | {IMPULSE_RATE: rate}
 
-    def curve(history: Dataset) -> tuple[np.ndarray, np.ndarray]:
-        return read(history)[TIME], read(history)[IMPULSE_RATE]
-
-    return data.table(NINE, read, Curve(curve))
+    rate_over_time = Curve(lambda history: itemgetter(TIME, IMPULSE_RATE)(read(history)))
+    return data.table(NINE, read, rate_over_time)
 
 
 @stacked
@@ -296,7 +289,7 @@ def peaks_over_pressure(data: Data) -> Iterator[DataFrame]:
     them; recorded peak rates.
     """
     rows = data.numbers(NINE, {P_PEAK: reading("highest_pressure", "highest"), GIVEN_RATE: PEAK})
-    yield rows.assign(source=SIMULATED)
+    yield rows
     yield line_through(rows, P_PEAK, GIVEN_RATE)
     recorded = given(data, "peak", 40)
     if len(recorded):
@@ -334,7 +327,7 @@ def linear_in_pressure(data: Data) -> Iterator[DataFrame]:
 @stacked
 def held_rates(data: Data) -> Iterator[DataFrame]:
     """Mean predicted rate of the hold at 150 gf/s, and the rates printed in Fig 4-2."""
-    yield data.numbers(FAST, {GIVEN_RATE: HELD}).assign(source=SIMULATED)
+    yield data.numbers(FAST, {GIVEN_RATE: HELD})
     yield given(data, "hold", 150)
 
 
@@ -402,8 +395,7 @@ def peak_rates(data: Data) -> Iterator[DataFrame]:
 
 def stamp(ax: Axes, text: str, x: float = 0.985, y: float = 0.03, va: str = "bottom") -> None:
     """A word in the picture, so that it is not taken for a recording."""
-    look = {"style": "italic", "color": style.GREY, "ha": "right", "va": va}
-    ax.text(x, y, text, transform=ax.transAxes, **look)
+    axs.remark(ax, x, y, text, style="italic", color=style.GREY, ha="right", va=va)
 
 
 def points(ax: Axes, rows: DataFrame, x: str, y: str, marker: str = "o", size: float = 30) -> None:
@@ -424,7 +416,7 @@ def draw_given(ax: Axes, frame: DataFrame, column: str = GIVEN_RATE) -> None:
         ("stated in the thesis", printed, "printed in the thesis, uncertain"),
         ("measured", recorded, "recorded"),
     ):
-        rows = frame[frame["source"].str.startswith(source)]
+        rows = axs.from_source(frame, source)
         if column not in frame or rows.empty:
             continue
         other = rows[DOUBT].fillna(rows[CURVATURE])
@@ -467,8 +459,7 @@ def trains(fig, frame, spec):
     rows = frame[frame["panel"] == "mean rate of the hold"].set_index("surface")
     for label, rate in rows[GIVEN_RATE].items():
         at_the_right(1.062, place[label], f"{rate:.1f}", va="center")
-    given_rates = frame[frame["source"].str.startswith(("stated", "measured"))]
-    for _, row in given_rates.iterrows():
+    for _, row in axs.from_source(frame, "stated", "measured").iterrows():
         at = [abs(rows[CURVATURE] - k).argmin() for k in row[[CURVATURE, DOUBT]].dropna()]
         text = f"{row[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in row["source"])
         at_the_right(1.135, np.mean(at), text, va="center", color=style.GREY)
@@ -487,8 +478,7 @@ def nine_frequencies(ax, frame, spec):
     for label in SURFACES:
         rows, look = frame[frame["surface"] == label], axs.look(label)
         rate, frequency = rows[rows["series"] == "rate"], rows[rows["series"] != "rate"]
-        jump = int(np.flatnonzero(np.diff(rate[TIME]) == 0)[0]) + 1
-        for leg in (rate[:jump], rate[jump:]):
+        for leg in axs.legs(rate):
             axs.curve(ax, leg, TIME, IMPULSE_RATE, whole=rate, lw=1.3, **look)
         often = np.interp(frequency[TIME], rate[TIME], rate[IMPULSE_RATE]) >= OFTEN
         dots = look | {"marker": ".", "ms": 2, "ls": "none"}
@@ -508,7 +498,7 @@ def points_and_line(ax, frame, spec):
     own = frame[frame["source"] == SIMULATED]
     points(ax, own, x, y)
     name_points(ax, own, x, y, line)
-    recorded = frame[frame["source"].str.startswith("measured")]
+    recorded = axs.from_source(frame, "measured")
     if len(recorded):
         ax.plot(recorded[x], recorded[y], "D", color=style.INK, ms=4.5, label="recorded")
     stamp(ax, "predicted")
@@ -528,9 +518,10 @@ def name_points(ax: Axes, rows: DataFrame, x: str, y: str, line: DataFrame) -> N
             away, how = (0, 4), {"va": "bottom", "ha": "center"}
         elif at[y] <= np.interp(at[x], line[x], line[y]):
             away, how = (5, -4), {"va": "top", "ha": "left"}
+        elif across > 0.08:
+            away, how = (-5, 4), {"va": "bottom", "ha": "right"}
         else:
-            left = across > 0.08
-            away, how = (-5 if left else 5, 4), {"va": "bottom", "ha": "right" if left else "left"}
+            away, how = (5, 4), {"va": "bottom", "ha": "left"}
         text = ", ".join(group["surface"])
         ax.annotate(text, at, away, textcoords="offset points", fontsize=6.5, **how)
 
@@ -555,7 +546,7 @@ def peak_and_steady_over_curvature(ax, frame, spec):
 def rate_over_width(ax, rows, spec):
     """Time runs from right to left, as the contact grows."""
     axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
-    own = rows[is_simulated(rows)]
+    own = axs.simulated(rows)
     look = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.8} | axs.look(own["surface"].iloc[0])
     axs.curve(ax, own, INVERSE_WIDTH, IMPULSE_RATE, **look)
     ends = dict(zip(("width_top", "width_end"), own[IMPULSE_RATE].iloc[[0, -1]], strict=True))
@@ -563,47 +554,39 @@ def rate_over_width(ax, rows, spec):
     ax.locator_params(axis="x", nbins=4)
     if own[IMPULSE_RATE].max() == 0:
         text = "below the threshold:\nno impulses predicted"
-        place = {"transform": ax.transAxes, "ha": "center", "va": "center"}
-        ax.text(0.5, 0.2, text, **place, **axs.NOTE)
+        axs.remark(ax, 0.5, 0.2, text, ha="center", va="center", **axs.NOTE)
 
 
 def twelve_nodes(fig, frame, spec):
     """Twelve panels: dotted simulated, solid and dashed by Eq 4-1."""
     axes = fig.subplots(4, 3, sharex=True, sharey=True)
-    looks = {
-        "simulated": axs.look("210") | {"lw": 1.6},
-        "Eq 4-1, one set": {"ls": style.DASHED, "lw": 1.0, "color": style.INK},
-        "Eq 4-1, a set for each": {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT},
-    }
-    wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
-    nodes = wide[is_simulated(frame)].groupby(NODE)
-    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=True)):
-        for series, look in looks.items():
-            own = rows[rows["series"] == series]
-            if series == "simulated":
-                axs.curve(ax, own, TIME, P, **look)
-            else:
-                ax.plot(own[TIME], own[P], **look)
-        axs.limit_axes(ax, wide, y=P, marked=k == 5)
+    simulated = axs.look("210") | {"lw": 1.6, "label": "simulated"}
+    one_set = {"ls": style.DASHED, "lw": 1.0, "color": style.INK}
+    one_set["label"] = "Eq 4-1, one set of constants"
+    own_set = {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT}
+    own_set["label"] = "a set for each node"
+    laws = {"Eq 4-1, one set": one_set, "Eq 4-1, a set for each": own_set}
+    for ax, (x, rows) in zip(axes.flat, axs.simulated(frame).groupby(NODE), strict=True):
+        axs.curve(ax, rows[rows["series"] == "simulated"], TIME, P, **simulated)
+        for series, look in laws.items():
+            law = rows[rows["series"] == series]
+            ax.plot(law[TIME], law[P_LAW], **look)
         style.in_kilo(ax.yaxis)
         ax.set(title=f"x = {x:.3g} mm", **HOLD)
+    axs.limit_axes(axes[1, 2], axs.together(frame, (P, P_LAW)), y=P)
     axes[3, 1].set_xlabel(TIME.label)
     axes[2, 0].set_ylabel("contact pressure (kPa)", y=1.15)
-    names = ("simulated", "Eq 4-1, one set of constants", "a set for each node")
-    looks = dict(zip(names, looks.values(), strict=True))
-    style.header_legend(fig, [style.handle(name, **look) for name, look in looks.items()])
+    style.header_legend(fig, axes[0, 0].lines)
 
 
 def energy_and_law(ax, rows, spec):
     """Points simulated, line by Eq 4-4, and what is left between them."""
-    own = rows[is_simulated(rows)]
-    look = {"marker": "o", "ms": 2.4, "mfc": "none", "mew": 0.7}
-    look |= axs.look(own["surface"].iloc[0]) | {"ls": "none"}
-    axs.curve(ax, own, TIME, SED, **look)
+    own = axs.simulated(rows)
+    look = {"marker": "o", "ms": 2.4, "mfc": "none", "mew": 0.7, "ls": "none"}
+    axs.curve(ax, own, TIME, SED, **look, **axs.look(own["surface"].iloc[0]))
     ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
     left = np.linalg.norm(own[SED] - own[SED_LAW]) / np.linalg.norm(own[SED])
-    text = f"r.m.s. residual {left:.0%}"
-    ax.text(0.97, 0.06, text, transform=ax.transAxes, ha="right", **axs.NOTE)
+    axs.remark(ax, 0.97, 0.06, f"r.m.s. residual {left:.0%}", ha="right", **axs.NOTE)
 
 
 def left_note(frame: DataFrame) -> list[str]:
@@ -625,16 +608,14 @@ def own_and_others(fig, frame, spec, fill, ratios, others, names=(None,)):
         fill(ax, frame[own | ranges], spec)
         ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
     axes[0].set_ylabel(spec.y[0].label)
-    right = axes[len(names) :]
-    for ax, (name, (title, mismatch)) in zip(right, others.items(), strict=True):
+    for ax, (name, (title, mismatch)) in zip(axes[len(names) :], others.items(), strict=True):
         beside(ax, frame[frame["panel"] == name], title, mismatch)
         ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
 
 
-def page_of(fill, ratios, others, **options) -> Page:
+def page_of(**options) -> Page:
     """A page of predicted rates and those of others."""
-    draw = partial(own_and_others, fill=fill, ratios=ratios, others=others, **options)
-    return Page(3.1, draw)
+    return Page(3.1, partial(own_and_others, **options))
 
 
 def points_and_law(ax, rows, spec, words="predicted by Eq 5-1", legend=LOWER_RIGHT):
@@ -662,12 +643,10 @@ def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
     """
     ax.set_title(f"{title}\n{mismatch}")
     if rows.empty:
-        ax.text(0.5, 0.5, "no rates given", transform=ax.transAxes, ha="center", color=style.GREY)
+        axs.remark(ax, 0.5, 0.5, "no rates given", ha="center", color=style.GREY)
         return
-    own, times = rows[is_simulated(rows)].sort_values(CURVATURE), []
-    fitted = "series" not in own or own["series"].isna().all()
-    if fitted:
-        own = own.assign(series="linear in the pressure, fitted")
+    fitted, times = "linear in the pressure, fitted", []
+    own = axs.simulated(rows).sort_values(CURVATURE).fillna({"series": fitted})
     curves = dict(list(own.groupby("series", sort=False)))
     theirs = rows[~is_simulated(rows)].groupby("series", sort=False)
     for marker, (name, points) in zip(style.MARKERS, theirs, strict=False):
@@ -675,7 +654,7 @@ def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
         look |= {"marker": marker, "ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
         ax.plot(points[CURVATURE], points[GIVEN_RATE], **look, label=name)
         same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]]
-        ours = curves[(same or list(curves))[0]]
+        ours = curves[[*same, *curves][0]]
         at = np.interp(points[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])
         times += list((points[GIVEN_RATE] / at)[at > 1])
     for name, curve in curves.items():
@@ -683,7 +662,8 @@ def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
         ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **look, label=name)
     ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()))
     ax.set_xlabel(CURVATURE.label)
-    far = f"theirs over ours: {np.median(times):.1f} (median)" if times and not fitted else ""
+    compared = times and fitted not in curves
+    far = f"theirs over ours: {np.median(times):.1f} (median)" if compared else ""
     small = {"fontsize": 6, "handlelength": 1.8, "borderaxespad": 0.2, "labelspacing": 0.3}
     ax.legend(title=far, alignment="left", loc="upper left", **small)
 

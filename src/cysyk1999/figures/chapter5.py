@@ -59,7 +59,6 @@ from cysyk1999.publishing import style
 from fingerpad.measures.features import (
     PRESSURE,
     SIMULATED,
-    is_simulated,
     pressure_at,
     profile,
     skin_at,
@@ -82,18 +81,16 @@ TEN_RUN, SUB_TEN = SPEEDS.only((TEN,)), SUB_SPEEDS.only((TEN,))
 PRESSED = NINE.only(WITHIN_400[1:])
 OTHER = {"color": style.HIGHLIGHT, "ls": style.DASHED, "lw": 1.1}
 """The second of two curves."""
+CURVED = "skin curvature, $A_1 K + A_2$"
 WITH_CURVATURE = Lines(
     looks={P_CENTRE: {"color": style.INK}, SCALED_CURVATURE: OTHER},
-    names={
-        P_CENTRE: "contact pressure",
-        SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$, in contact",
-    },
+    names={P_CENTRE: "contact pressure", SCALED_CURVATURE: f"{CURVED}, in contact"},
     hidden={SCALED_CURVATURE: P_CENTRE},
 )
 SAMPLED = replace(
     WITH_CURVATURE,
     looks={q: look | {"marker": ".", "ms": 4} for q, look in WITH_CURVATURE.looks.items()},
-    names=WITH_CURVATURE.names | {SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$"},
+    names=WITH_CURVATURE.names | {SCALED_CURVATURE: CURVED},
     hidden={},
 )
 """The same at the points it was stepped to."""
@@ -168,9 +165,15 @@ def largest_energies(data: Data) -> DataFrame:
 # --- what layouts do not say ----------------------------------------------------------------------
 
 
+def sampled_and_zero(ax, frame, spec):
+    """Points that were stepped to, and a line at zero."""
+    SAMPLED(ax, frame, spec)
+    ax.axhline(0, color=style.GREY, lw=0.5, zorder=1)
+
+
 def at_ten(ax, frame, spec):
     """The range over the velocities, and one of them."""
-    rows, (y,) = frame[is_simulated(frame)], spec.y
+    rows, (y,) = axs.simulated(frame), spec.y
     extent = rows.groupby(spec.x)[y].agg(["min", "max"])
     apart = 100 * ((extent["max"] - extent["min"]) / extent.mean(axis=1)).max()
     words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
@@ -186,12 +189,12 @@ def three_locations(fig, frame, spec):
     """
     grid = fig.add_gridspec(4, 3, height_ratios=[1.0, 1.0, 1.5, 1.5])
     trace = fig.add_subplot(grid[0, :])
-    shape, marks = axs.shape_of(frame), frame[~is_simulated(frame)]
+    shape, marks = axs.shape_of(frame), axs.from_source(frame, "thesis axis range")
     axs.draw_surface(trace, frame)
     trace.tick_params(labelbottom=True)
-    ends = marks.loc[marks["panel"] == axs.SURFACE, DISTANCE].dropna()
+    start = marks.loc[marks["panel"] == axs.SURFACE, DISTANCE].min()
     trace.set(xlabel=DISTANCE.label, ylabel=HEIGHT.label)
-    trace.set_xlim(ends.min() if len(ends) else 5, shape[DISTANCE].max())
+    trace.set_xlim(5 if np.isnan(start) else start, shape[DISTANCE].max())
     star = {"marker": "*", "ms": 8, "mec": "white", "mew": 0.5, "clip_on": False}
     for column, location in enumerate(LOCATIONS):
         rows = frame[frame["panel"] == f"{location:g} mm"]
@@ -203,7 +206,7 @@ def three_locations(fig, frame, spec):
             ax.plot(at, height, color=style.HIGHLIGHT, **star)
         window.fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
         window.plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
-        ends = rows.loc[~is_simulated(rows), DISTANCE].dropna()
+        ends = axs.from_source(rows, "thesis axis range")[DISTANCE].dropna()
         low, high = (ends.min(), ends.max()) if len(ends) else (at - 4, at + 4)
         window.set(xlim=(low, high), ylim=(-0.52, 0.36))
         window.set(xlabel=DISTANCE.label, title=f"at {at:g} mm")
@@ -220,11 +223,6 @@ def three_locations(fig, frame, spec):
     names = (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)")
     for ax, name in zip(fig.axes[1:4], names, strict=True):
         ax.set_ylabel(name)
-
-
-def zero_line(panels, frame):
-    """A line at zero."""
-    next(iter(panels.values())).axhline(0, color=style.GREY, lw=0.5, zorder=1)
 
 
 LOOKS = {P: {"color": style.INK}, SKIN_CURVATURE: OTHER | {"lw": 0.9}}
@@ -249,8 +247,8 @@ def two_axes(panels, frame):
         if number == 5:
             right.set_ylabel("contact pressure (kPa)")
     names = ("contact pressure (right axis)", "skin curvature in contact (left axis)")
-    handles = [style.handle(name, **LOOKS[q]) for name, q in zip(names, LOOKS, strict=True)]
-    style.header_legend(ax.figure, handles)
+    looks = dict(zip(names, LOOKS.values(), strict=True))
+    style.header_legend(ax.figure, style.handles(looks))
 
 
 def from_half_a_millimetre(panels, frame):
@@ -281,12 +279,11 @@ def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
 
 def energy_figure(number: str, depth: float, thesis: Mapping[str, str], low: float) -> Figure:
     """Figs 5-13 and 5-24."""
-    um = f"{depth * 1e6:.0f} µm"
     receptor = Q(RECEPTOR.name, RECEPTOR.unit, read=lambda history: depth * 1e6, checked=False)
     columns = (DISTANCE, sed(depth), receptor)
     return Figure(
         number,
-        f"Strain energy density {um} under the centre at five stroking velocities",
+        f"Strain energy density {depth * 1e6:.0f} µm under the centre at five stroking velocities",
         SPEEDS,
         DISTANCE,
         (SED,),
@@ -332,9 +329,8 @@ FIGURES = (
         {DISTANCE: "T246", P_CENTRE: "T245"},
         Panels(
             3.2,
-            fill=SAMPLED,
+            fill=sampled_and_zero,
             legend={"loc": "lower right", "handlelength": 2.6},
-            extra=zero_line,
         ),
         surface=(0, 50),
     ),

@@ -64,7 +64,7 @@ from cysyk1999.measures.responses import (
 from cysyk1999.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350, Runs
 from cysyk1999.measures.table import MEASURES, reading
 from cysyk1999.publishing import style
-from fingerpad.measures.features import SIMULATED, is_simulated
+from fingerpad.measures.features import SIMULATED
 from fingerpad.measures.strokes import distance, energy_at, loaded
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 
@@ -103,8 +103,8 @@ def rate_errors(
     """Of the predicted rate from one place to another of the way (mm), over all of it where none
     are given.
     """
-    ends = (1e-3 * place for place in way)
-    curve = over_stroke(of_rate(IMPULSE_RATE, depth, law).read, *ends)
+    rate = of_rate(IMPULSE_RATE, depth, law).read
+    curve = over_stroke(rate, *(1e-3 * place for place in way))
     return curve_errors(history, coarse, curve).columns
 
 
@@ -184,14 +184,14 @@ def burst_rows(data: Data, runs: Runs, columns: Mapping[Q, str]) -> Iterator[Dat
     yield own.assign(source=PREDICTED, panel=own["series"], **{SPEED: speed})
     if (rates := data.measured) is None:
         return
-    names = rates["speed_mm_per_s"].map("{:g} mm/s".format)
-    burst = (rates["window"] == "burst") & (rates["receptor"] == "SA-I")
-    rows = rates.assign(series=names)[burst & names.isin(list(runs))]
+    rows = rates.query("window == 'burst' and receptor == 'SA-I'")
+    series = rows["speed_mm_per_s"].map("{:g} mm/s".format)
     width, speed = rows["burst_width_mm"], rows["speed_mm_per_s"]
+    of = {"source": "measured (" + rows["recording"] + ")", "panel": series, "series": series}
+    of |= {SPEED: speed, CURVATURE: rows["curvature_per_m"]}
     found = {BURST_RATE: rows["rate_per_s"], BURST_WIDTH: width, BURST_TIME: width / speed}
-    of = {"source": "measured (" + rows["recording"] + ")", "panel": rows["series"]}
-    of |= {"series": rows["series"], SPEED: speed, CURVATURE: rows["curvature_per_m"]}
-    yield of | {q: found[q] for q in columns}
+    recorded = DataFrame(of | {q: found[q] for q in columns})
+    yield recorded[series.isin(list(runs))]
 
 
 @stacked
@@ -256,9 +256,8 @@ def pressed_rates(data: Data) -> DataFrame:
 
 def draw_raster(ax: Axes, frame: DataFrame, count: int) -> None:
     """One row of ticks a stroke, the first one above."""
-    rows = frame[(frame["panel"] == RASTER) & is_simulated(frame)]
-    trains = [rows.loc[rows[TRIAL] == trial, DISTANCE].to_numpy() for trial in range(1, count + 1)]
-    places = range(1, count + 1)
+    rows, places = frame[frame["panel"] == RASTER], range(1, count + 1)
+    trains = [rows.loc[rows[TRIAL] == trial, DISTANCE].to_numpy() for trial in places]
     look = {"linelengths": 0.7, "linewidths": 0.8, "colors": [style.INK], "clip_on": False}
     ax.eventplot(trains, lineoffsets=places, **look)
     ax.set(ylim=(count + 0.6, 0.4), yticks=[1, count] if count > 5 else places)
@@ -292,8 +291,7 @@ def plate_both_ways(fig, frame, spec):
         rate = rows[rows["panel"] == "rate"]
         axs.curve(bottom, rate, DISTANCE, IMPULSE_RATE, color=style.INK, lw=1.2)
         if RASTER not in set(rows["panel"]):
-            place = {"transform": top.transAxes, "ha": "center", "color": style.GREY}
-            top.text(0.5, 0.5, "no impulse predicted", **place)
+            axs.remark(top, 0.5, 0.5, "no impulse predicted", ha="center", color=style.GREY)
         top.set_title(title)
         bottom.set(xlabel="stroke distance (mm)", xlim=(0, 50))
     axes[1, 0].set(ylim=(0, None), ylabel=RATE_WORDS)
@@ -302,27 +300,27 @@ def plate_both_ways(fig, frame, spec):
 
 def plate_note(frame: DataFrame) -> list[str]:
     """The errors of either way: relative to next to no response one tells little."""
-    error = axs.error_text(frame) and f"{axs.error_text(frame)}. "
-    place = "Receptor 46 µm right of a ridge's tip, 915 µm deep."
-    return [f"Predicted by Eq 5-1, not measured. {error}{place}"]
+    place = "Receptor 46 µm right of a ridge's tip, 915 µm deep"
+    parts = "Predicted by Eq 5-1, not measured", axs.error_text(frame), place
+    return [" ".join(f"{part}." for part in parts if part)]
 
 
 def against_velocity(ax, frame, spec):
     """A line a convexity, named at its end."""
-    (y,), own, ends = spec.y, frame[frame["source"] == PREDICTED], {}
-    for label, rows in own.groupby("convexity", sort=False):
-        colour = style.curvature_colour(float(label))
-        look = {"marker": "o", "ms": 3, "color": colour, "lw": 1.0}
+    (y,), own = spec.y, frame[frame["source"] == PREDICTED]
+    curves = dict(list(own.groupby("convexity", sort=False)))
+    looks = {label: {"color": style.curvature_colour(float(label))} for label in curves}
+    for label, rows in curves.items():
+        look = looks[label] | {"marker": "o", "ms": 3, "lw": 1.0}
         axs.curve(ax, rows, SPEED, y, points=True, **look)
-        ends[label] = rows[y].iloc[-1]
-    measured = frame[frame["source"].str.startswith("measured")]
+    measured = axs.from_source(frame, "measured")
     ax.plot(measured[SPEED], measured[y], "x", color=style.INK, ms=4)
     low, high = ax.get_ylim()
     gap = 0.062 * (high - low)
-    places = style.spread(list(ends.values()), gap, low + gap / 2, high - 2 * gap)
-    for (label, end), place in zip(ends.items(), places, strict=True):
-        line = {"color": style.curvature_colour(float(label)), "lw": 0.7, "clip_on": False}
-        ax.plot([40.4, 42.3], [end, place], **line)
+    ends = [rows[y].iloc[-1] for rows in curves.values()]
+    places = style.spread(ends, gap, low + gap / 2, high - 2 * gap)
+    for label, end, place in zip(curves, ends, places, strict=True):
+        ax.plot([40.4, 42.3], [end, place], **looks[label], lw=0.7, clip_on=False)
         ax.text(42.5, place, label, va="center", fontsize=6.5)
     ax.text(42.5, max(places) + 1.2 * gap, "curvature\n(1/m)", va="bottom", fontsize=6.5)
 
@@ -339,36 +337,35 @@ def three_laws(panels, frame):
 
 def say_plateaus(panels, frame):
     """Between bursts the frequency is that of one long interval."""
-    axs.leave_room_for_brackets(panels, frame)
     ax = next(iter(panels.values()))
+    style.leave_room(ax.figure, beside=0.02)
     text = "level stretches: one interval from burst to burst; "
     text += "brackets: thesis's axis (?: reading uncertain)"
-    place = {"transform": ax.transAxes, "ha": "right", "va": "top"}
-    ax.text(0.99, 0.97, text, **place, **axs.NOTE)
+    axs.remark(ax, 0.99, 0.97, text, ha="right", va="top", **axs.NOTE)
 
 
 def aligned(panels, frame):
     """Labels of the vertical axes in one line."""
-    axs.leave_room_for_brackets(panels, frame)
-    panels[TIME, SED].figure.align_ylabels()
+    fig = panels[TIME, SED].figure
+    style.leave_room(fig, beside=0.02)
+    fig.align_ylabels()
 
 
-CUT = {
-    SED: (150, "strain energy density,\ncut at 150 (Pa)"),
-    RATE: (0, "positive rate of\nstrain energy (Pa/s)"),
-}
+LEAST = {SED: 150, RATE: 0}
+"""What the thesis cuts the two off at."""
+CUT_ENERGY = SED.reading(None, "strain energy density,\ncut at 150 (Pa)")
+CUT_RATE = RATE.reading(None, "positive rate of\nstrain energy (Pa/s)")
+BINNED_RATE = IMPULSE_RATE.reading(None, RATE_WORDS)
 
 
 def energy_rate_or_bars(ax, frame, spec):
     """Energy cut at its threshold, positive rate, predicted histogram."""
     rows, (y,) = frame[frame["source"] == SIMULATED], spec.y
-    least, words = CUT.get(y, (0, RATE_WORDS))
     if y == IMPULSE_RATE:
         draw_bars(ax, frame, TIME, 0.05)
     else:
-        shown = rows.assign(**{y: rows[y].clip(lower=least)})
+        shown = rows.assign(**{y: rows[y].clip(lower=LEAST[y])})
         axs.curve(ax, shown, TIME, y, whole=rows, color=style.INK)
-    ax.set_ylabel(words)
 
 
 def draw_rate(ax, rows, spec):
@@ -383,8 +380,8 @@ def legend_of_the_first(panels, frame):
     """With the brackets that stand at some panels."""
     first = next(iter(panels.values()))
     line = {"color": style.GREY, "lw": 0.7, "ls": style.DASHED, "marker": "|", "ms": 4}
-    bracket = style.handle("thesis's axis (?: reading uncertain)", **line)
-    first.legend(handles=[*first.get_legend_handles_labels()[0], bracket], loc="upper right")
+    first.plot([], [], label="thesis's axis (?: reading uncertain)", **line)
+    first.legend(loc="upper right")
 
 
 RECORDED = {"color": style.HIGHLIGHT}
@@ -437,9 +434,7 @@ FIGURES = (
         SPEED,
         tuple(BURSTS),
         {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"},
-        Panels(
-            3.4, names=tuple((SPEED, y) for y in BURSTS), across=2, fill=against_velocity
-        ),
+        Panels(3.4, names=tuple((SPEED, y) for y in BURSTS), across=2, fill=against_velocity),
         rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS),
         measured="impulse_rates",
         joined="convexity",
@@ -516,11 +511,11 @@ FIGURES = (
         "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s",
         TEN_RUN,
         STROKE_TIME,
-        (SED, RATE, IMPULSE_RATE),
+        (CUT_ENERGY, CUT_RATE, BINNED_RATE),
         {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
         Panels(
             4.8,
-            names=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)),
+            names=tuple((TIME, y) for y in (CUT_ENERGY, CUT_RATE, BINNED_RATE)),
             extra=aligned,
             fill=energy_rate_or_bars,
             marked=RATE,
@@ -545,7 +540,7 @@ FIGURES = (
         "Predicted impulse rate of eight ramps and holds",
         EIGHT,
         TIME,
-        (IMPULSE_RATE.reading(None, RATE_WORDS),),
+        (BINNED_RATE,),
         {TIME: "T297", IMPULSE_RATE: {label: f"T{289 + k}" for k, label in enumerate(EIGHT)}},
         Panels(
             6.0,

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-import pandas as pd
 from matplotlib.patches import Rectangle
 from pandas import DataFrame
 
@@ -53,7 +52,7 @@ def elements(data: Data) -> DataFrame:
     rows = rows[(rows["series"] != "element") | inside]
     # elements cut by the window's edge are left out
     whole = rows.groupby("element")[Y].transform("size") >= 4
-    return rows[(rows["series"] != "element") | whole].reset_index(drop=True)
+    return rows[(rows["series"] != "element") | whole]
 
 
 def mesh_and_detail(fig, frame, spec):
@@ -76,13 +75,11 @@ def mesh_and_detail(fig, frame, spec):
     detail.set_title(f"{value['nodes (1)']:,.0f} nodes, {smallest}", fontsize=6.5)
 
 
-def at_two_places(data: Data) -> DataFrame:
+@stacked
+def at_two_places(data: Data) -> Iterator[DataFrame]:
     """Strain energy at 915 um against time, nine surfaces, at the centre and beside it."""
-    parts = [
-        data.traces(RIDGED_NINE, (TIME, sed(DEPTH, x))).assign(panel=panel)
-        for panel, x in PLACES.items()
-    ]
-    return pd.concat(parts, ignore_index=True)
+    for panel, x in PLACES.items():
+        yield data.traces(RIDGED_NINE, (TIME, sed(DEPTH, x))).assign(panel=panel)
 
 
 def named_at_both(panels, frame):
@@ -98,7 +95,7 @@ def named_at_both(panels, frame):
         style.label_ends(ax, {label: tuple(end) for label, end in last.T.items()}, 2.6, "1/m")
         if axis == axis:
             text = f"thesis's axis: to {axis:.0f} Pa, {axis / highest:.1f} times as high"
-            ax.text(0.03, 0.98, text, transform=ax.transAxes, va="top", **axs.NOTE)
+            axs.remark(ax, 0.03, 0.98, text, va="top", **axs.NOTE)
 
 
 @stacked
@@ -124,15 +121,14 @@ def at_receptors(data: Data, runs: Runs) -> Iterator[Mapping]:
 
 def name_receptors(panels, frame):
     """Legend of the receptors."""
-    series = frame.loc[is_simulated(frame), "series"].unique()
-    handles = [style.handle(each, **LOOKS[each]) for each in series]
-    style.header_legend(panels["right"].figure, handles)
+    looks = {series: LOOKS[series] for series in axs.simulated(frame)["series"].unique()}
+    style.header_legend(panels["right"].figure, style.handles(looks))
 
 
 def magnify_the_difference(panels, frame):
     """In an inset, how much more than the centre the receptors beside it have."""
     name_receptors(panels, frame)
-    own = frame[is_simulated(frame)]
+    own = axs.simulated(frame)
     for way, ax in panels.items():
         curves = dict(list(own[own["panel"] == way].groupby("series", sort=False)))
         centre = curves.pop("centre")[SED].to_numpy()

@@ -290,13 +290,12 @@ def study_figure(
 
 
 def leave_room(fig: Figure, above: float = 0.0, beside: float = 0.0) -> None:
-    """Keep the panels from what the layout does not see: so far (inch) below the title, and so far
-    from the right edge.
+    """Keep the panels from what the layout does not see: `above` (inch) under the title, `beside`
+    (share of the width) at the right.
     """
-    x, y, width, height = fig.get_layout_engine().get()["rect"]
-    whole_width, whole_height = fig.get_size_inches()
-    rect = (x, y, width - beside / whole_width, height - above / whole_height)
-    fig.get_layout_engine().set(rect=rect)
+    engine = fig.get_layout_engine()
+    x, y, width, height = engine.get()["rect"]
+    engine.set(rect=(x, y, width - beside, height - above / fig.get_figheight()))
 
 
 class Powers(ScalarFormatter):
