@@ -426,10 +426,10 @@ def sections(
         history = data.histories[scene]
         errors = section_errors(history, data.coarse.get(scene))
         if before or not depth:
-            lines = section(history, 0.0, corneum=True)
+            lines = section(history, 0.0)
             yield section_rows(panel, "undeformed", lines, layers, errors)
         if depth:
-            lines = section(history, depth, corneum=True)
+            lines = section(history, depth)
             shown = *(k for k in layers if k != "bone" or not before), "indenter"
             yield section_rows(panel, "deformed", lines, shown, errors)
 

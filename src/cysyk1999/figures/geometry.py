@@ -210,28 +210,30 @@ def quality_of(frame: DataFrame) -> Series:
 # --- sections -------------------------------------------------------------------------------------
 
 
-def section(history: Dataset, depth: float, corneum: bool = False) -> dict[str, np.ndarray]:
+def mesh_of(history: Dataset) -> PadMesh:
+    """The mesh of a history with full fields: its nodes, elements and layers."""
+    cells = history["element_nodes"].values
+    points, region = history["node_position"].values, history["element_region"].values
+    return PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True)
+
+
+def section(history: Dataset, depth: float) -> dict[str, np.ndarray]:
     """Layer boundaries (n, 2) in m at the end of a press to `depth` (0: undeformed), and the
     indenter's lower side.
 
-    Lines as in `boundaries`, and if asked ``corneum``, the inner side of the stratum corneum:
-    material points at its thickness under the skin, moved as the epidermis round them.
+    Lines as in `boundaries`, and ``corneum``, the inner side of the stratum corneum: material
+    points at its thickness under the skin, moved as the epidermis round them.
     """
-    points = history["node_position"].values
-    cells, region = history["element_nodes"].values, history["element_region"].values
-    mesh = PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True)
-    moved = np.zeros_like(points)
+    mesh = mesh_of(history)
+    points, nodes, moved = mesh.points, boundaries(mesh), np.zeros_like(mesh.points)
     if depth:
         moved = history["snapshot_displacement"].values[leg_of(history, depth)]
-    nodes = boundaries(mesh)
     lines = {name: points[line] + moved[line] for name, line in nodes.items()}
-    if corneum:
-        inner = inward(densify(points[nodes["skin"]], 0.1e-3), stratum_corneum(history))
-        lines["corneum"] = inner
-        if depth:  # in mm: in m the search for triangles takes many times as long
-            near = np.unique(cells[region == 0])
-            motion = LinearNDInterpolator(points[near] * 1e3, moved[near])
-            lines["corneum"] = inner + motion(inner * 1e3)
+    lines["corneum"] = inward(densify(points[nodes["skin"]], 0.1e-3), stratum_corneum(history))
+    if depth:  # in mm: in m the search for triangles takes many times as long
+        near = np.unique(mesh.cells[mesh.region == 0])
+        motion = LinearNDInterpolator(points[near] * 1e3, moved[near])
+        lines["corneum"] += motion(lines["corneum"] * 1e3)
     x = np.linspace(-8.4e-3, 8.4e-3, 1681)
     height = scene_of(history).stimulus.outline(x) + points[:, 1].max() - depth
     lines["indenter"] = np.column_stack((x, height))[np.isfinite(height)]
@@ -256,9 +258,10 @@ def section_errors(history: Dataset, coarse: Companion | None) -> Errors:
     """
 
     def sunk(d: Dataset, layer: str) -> float:
-        before, after = (section(d, z)[layer] for z in (0.0, max(pressed_depths(d))))
-        node = int(np.argmin(np.where(before[:, 1] > 0, abs(before[:, 0]), np.inf)))
-        return float(after[node, 1] - before[node, 1])
+        nodes, deepest = boundaries(mesh_of(d))[layer], leg_of(d, max(pressed_depths(d)))
+        x, y = d["node_position"].values[nodes].T
+        apex = nodes[np.argmin(np.where(y > 0, abs(x), np.inf))]
+        return float(d["snapshot_displacement"].values[deepest, apex, 1])
 
     layers = [partial(sunk, layer=layer) for layer in ("dermis", "fat")]
     return number_errors(history, coarse, *layers)
