@@ -22,7 +22,7 @@ from pandas import DataFrame, Series
 from cysyk1999.measures.errors import PARTS, SHOWN_ABOVE, norm, total
 from cysyk1999.measures.quantities import CURVATURE, DISTANCE, HEIGHT, TIME
 from cysyk1999.publishing import style
-from fingerpad.measures.features import PHASES, STEADY, TOP, is_simulated
+from fingerpad.measures.features import PHASES, SIMULATED, STEADY, TOP, is_simulated
 
 AT_REST = "before contact"
 PHASE_LINES = {
@@ -321,8 +321,7 @@ def _set_limits(ax: Axes, frame: DataFrame, column: str, axis: str) -> Range | N
     uncertain.
     """
     ends, doubt = _ranges(frame, column)
-    shown = is_simulated(frame) | frame["source"].str.startswith("measured")
-    data = frame.loc[shown, column].dropna()
+    data = from_source(frame, SIMULATED, "measured")[column].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
     if ends.empty:
         if axis == "y" and len(data):
@@ -333,14 +332,13 @@ def _set_limits(ax: Axes, frame: DataFrame, column: str, axis: str) -> Range | N
     if axis == "x" and low < 0 and widest > high:  # a profile wider than the axis
         set_limits(-widest * 1.04, widest * 1.04)
         return Range(low, high, True, doubt)
-    slack, free = 1e-3 * (high - low), axis == "y" and len(data)
-    below = free and low < 0 and data.min() < low - slack  # an axis from 0 starts there
-    above = free and data.max() > high + slack
-    set_limits(
-        data.min() - 0.06 * (high - data.min()) if below else low,
-        data.max() + 0.06 * (data.max() - low) if above else high,
-    )
-    left = bool(below or above)
+    slack, bottom, top = 1e-3 * (high - low), low, high
+    if axis == "y" and low < 0 and data.min() < low - slack:  # an axis from 0 starts there
+        bottom = data.min() - 0.06 * (high - data.min())
+    if axis == "y" and data.max() > high + slack:
+        top = data.max() + 0.06 * (data.max() - low)
+    set_limits(bottom, top)
+    left = (bottom, top) != (low, high)
     return Range(low, high, left, doubt) if left or (doubt and axis == "y") else None
 
 
@@ -393,8 +391,7 @@ def wide_limits(ax: Axes, rows: DataFrame, x: str, y: str) -> None:
             high if wide[1] == high and len(ends) else wide[1] + margin,
         )
         box.append(Range(low, high, wide != (low, high) and len(ends) > 0, doubt))
-    beyond = any(each.left or each.uncertain for each in box)
-    if beyond and rows[x].notna().any() and rows[y].notna().any():
+    if any(each.left or each.uncertain for each in box):
         thesis_box(ax, *box)
 
 

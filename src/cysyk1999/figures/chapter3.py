@@ -30,7 +30,6 @@ from cysyk1999.figures.geometry import (
     quality_of,
     section,
     section_errors,
-    section_rows,
     stratum_corneum,
     surface_deflection,
 )
@@ -418,20 +417,22 @@ LINED = ("skin", "corneum", "dermis", "fat", "bone")
 @stacked
 def sections(
     data: Data, panels: Mapping[str, tuple[str, float]], layers: tuple[str, ...], before: bool
-) -> Iterator[DataFrame]:
+) -> Iterator[Mapping]:
     """Layer boundaries at some indentations (panel -> scene, depth in m), with the indenter's
     lower side; `before`: and without load, in every panel.
     """
     for panel, (scene, depth) in panels.items():
         history = data.histories[scene]
-        errors = section_errors(history, data.coarse.get(scene))
-        if before or not depth:
-            lines = section(history, 0.0)
-            yield section_rows(panel, "undeformed", lines, layers, errors)
+        errors = section_errors(history, data.coarse.get(scene)).columns
+        states = {"undeformed": (0.0, layers)} if before or not depth else {}
         if depth:
-            lines = section(history, depth)
-            shown = *(k for k in layers if k != "bone" or not before), "indenter"
-            yield section_rows(panel, "deformed", lines, shown, errors)
+            deformed = [layer for layer in layers if not (before and layer == "bone")]
+            states["deformed"] = depth, (*deformed, "indenter")
+        for state, (pressed, shown) in states.items():
+            lines = section(history, pressed)
+            for layer in shown:
+                x, y = 1e3 * lines[layer].T
+                yield {"panel": panel, "phase": state, "layer": layer, X: x, Y: y} | errors
 
 
 def shaded_section(ax, rows, spec):

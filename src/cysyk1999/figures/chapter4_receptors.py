@@ -74,7 +74,6 @@ from fingerpad.measures.features import (
     SIMULATED,
     SURFACES,
     energy,
-    force_gf,
     is_simulated,
     pressure_at,
     ramp_end,
@@ -88,6 +87,7 @@ OFTEN = 8
 """Impulses/s from which on a train has enough of them in Fig 4-3 that their mean frequency is not
 biased.
 """
+TRAIN_PANELS = "force", "impulses", "mean rate of the hold"
 PRINTED = ("T083", "T084", "T085", "T086", "T087")
 """Mean rates of the hold that can be read beside the rasters of Fig 4-2."""
 
@@ -174,8 +174,8 @@ def trains_and_rates(data: Data) -> Iterator[DataFrame | Mapping]:
     """
     numbers = data.numbers(FAST, {GIVEN_RATE: HELD})
     plate = data.histories[FAST["flat"]]
-    yield numbers.assign(panel="mean rate of the hold")
-    force = {TIME: plate["time"].values, FORCE: force_gf(plate)}
+    yield numbers.assign(panel=TRAIN_PANELS[2])
+    force = {q: q.read(plate) for q in (TIME, FORCE)}
     yield {"source": SIMULATED, "panel": "force"} | force
     errors = numbers.set_index("surface")[list(PARTS)]
     for k, (label, history, _) in enumerate(data.runs(FAST)):
@@ -201,33 +201,23 @@ def frequencies(data: Data) -> Iterator[DataFrame]:
         yield rate[[TIME, IMPULSE_RATE]].assign(series="rate", **of)
 
 
-def peak_and_steady(data: Data) -> tuple[DataFrame, DataFrame, DataFrame]:
+@stacked
+def peak_and_steady(data: Data, over_curvature: bool) -> Iterator[DataFrame]:
     """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded
-    ones of either kind.
+    ones: over curvature, or the steady one over the peak.
     """
+    peak, steady = given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
     rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY})
-    return rows, given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
-
-
-@stacked
-def steady_over_peak(data: Data) -> Iterator[DataFrame]:
-    """Steady rates against peak rates."""
-    rows, peak, steady = peak_and_steady(data)
     yield rows
-    yield line_through(rows, GIVEN_RATE, STEADY_RATE)
-    if len(peak) and len(steady):
-        yield peak.merge(steady, on=["source", CURVATURE, DOUBT])
-
-
-@stacked
-def over_curvature(data: Data) -> Iterator[DataFrame]:
-    """Peak and steady rates against curvature."""
-    rows, peak, steady = peak_and_steady(data)
-    yield rows
-    for column in (GIVEN_RATE, STEADY_RATE):
-        yield line_through(rows, CURVATURE, column)
-    yield peak
-    yield steady
+    if over_curvature:
+        yield line_through(rows, CURVATURE, GIVEN_RATE)
+        yield line_through(rows, CURVATURE, STEADY_RATE)
+        yield peak
+        yield steady
+    else:
+        yield line_through(rows, GIVEN_RATE, STEADY_RATE)
+        if len(peak) and len(steady):
+            yield peak.merge(steady, on=["source", CURVATURE, DOUBT])
 
 
 def widths_of_other_pads(data: Data) -> DataFrame:
@@ -438,14 +428,13 @@ def trains(fig, frame, spec):
     right.
     """
     upper, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1, 6.2])
-    force = frame[frame["panel"] == "force"]
+    force, impulses, held = (frame[frame["panel"] == name] for name in TRAIN_PANELS)
     upper.plot(force[TIME], force[FORCE], color=style.INK, clip_on=False)
     axs.limit_axes(upper, frame, y=FORCE)
     upper.set(ylabel=FORCE.label, yticks=[0, 20])
-    place = {label: k for k, label in enumerate(SURFACES)}
-    impulses = frame[frame["panel"] == "impulses"]
     for (label, series), train in impulses.groupby(["surface", "series"]):
-        row = place[label] + (int(series.split()[1]) - 1) * 0.2 - 0.3
+        trial = int(series.removeprefix("trial "))
+        row = SURFACES.index(label) + (trial - 1) * 0.2 - 0.3
         ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, **axs.look(label), lw=0.8)
     ax.set(xlim=(0, force[TIME].max()), ylim=(8.6, -0.6), xlabel=TIME.label, ylabel=CURVATURE.label)
     ax.set_yticks(range(9), ["flat plate", *SURFACES[1:]])
@@ -456,11 +445,10 @@ def trains(fig, frame, spec):
     def at_the_right(x, y, text, **look):
         ax.text(x, y, text, transform=ax.get_yaxis_transform(), ha="right", **look)
 
-    rows = frame[frame["panel"] == "mean rate of the hold"].set_index("surface")
-    for label, rate in rows[GIVEN_RATE].items():
-        at_the_right(1.062, place[label], f"{rate:.1f}", va="center")
+    for row, rate in enumerate(held[GIVEN_RATE]):
+        at_the_right(1.062, row, f"{rate:.1f}", va="center")
     for _, row in axs.from_source(frame, "stated", "measured").iterrows():
-        at = [abs(rows[CURVATURE] - k).argmin() for k in row[[CURVATURE, DOUBT]].dropna()]
+        at = [abs(held[CURVATURE] - k).argmin() for k in row[[CURVATURE, DOUBT]].dropna()]
         text = f"{row[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in row["source"])
         at_the_right(1.135, np.mean(at), text, va="center", color=style.GREY)
     at_the_right(1.066, -0.62, "predicted", va="bottom", fontsize=6.5)
@@ -739,7 +727,7 @@ FIGURES = (
     of_rates(
         "4-4",
         "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf",
-        steady_over_peak,
+        partial(peak_and_steady, over_curvature=False),
         points_of(points_and_line, legend={"loc": "upper left"}),
         {GIVEN_RATE: "T094", STEADY_RATE: "T095"},
         x=PEAK_RATE,
@@ -748,7 +736,7 @@ FIGURES = (
     of_rates(
         "4-5",
         "Predicted peak and steady rates against curvature",
-        over_curvature,
+        partial(peak_and_steady, over_curvature=True),
         points_of(peak_and_steady_over_curvature),
         {GIVEN_RATE: "T096", CURVATURE: "T162"},
         x=CURVATURE.reading(None, "surface curvature (1/m)"),

@@ -240,18 +240,6 @@ def section(history: Dataset, depth: float) -> dict[str, np.ndarray]:
     return lines
 
 
-def section_rows(
-    panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], errors: Errors
-) -> DataFrame:
-    """Some lines of a `section` as rows."""
-    parts = []
-    for layer in layers:
-        x, y = 1e3 * lines[layer].T
-        of = {"panel": panel, "phase": state, "layer": layer}
-        parts.append(DataFrame(of | {X: x, Y: y} | errors.columns))
-    return pd.concat(parts, ignore_index=True)
-
-
 def section_errors(history: Dataset, coarse: Companion | None) -> Errors:
     """Errors of the vertical displacement of the layers' boundaries under the apex, at the deepest
     press.
