@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 import synthetic
-from cysyk1999.figures.geometry import LAYERS, boundaries, inward, loops, quality_of
+from cysyk1999.figures.geometry import boundaries, inward
 from cysyk1999.figures.grammar import edged_profile, upper_profile
 from cysyk1999.figures.registry import CHAPTERS, FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, STEPS
@@ -192,24 +192,6 @@ def test_axis_is_extended_and_marked_where_the_data_leave_the_thesiss():
     assert "thesis axis range" in [t.get_text().replace("\n", " ") for t in ax.texts]
 
 
-def test_energy_rate_keeps_the_jump_at_the_top_of_the_ramp():
-    history = results()[0]["ramp40_k210"]
-    rate = ft.energy_rate(history, 915e-6)
-    at_top = rate[np.isclose(rate["time (s)"], 0.5)]["strain_energy_rate (Pa/s)"].to_numpy()
-    assert len(at_top) == 2 and at_top[0] > 0 > at_top[1]
-    rising = ft.energy(history, 915e-6)[ft.ramp_end(history)]
-    ramp = rate.iloc[: ft.ramp_end(history) + 1].to_numpy()
-    assert np.trapezoid(ramp[:, 1], ramp[:, 0]) == pytest.approx(rising, rel=0.02)
-
-
-def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
-    history = results()[0]["ramp40_flat"]
-    shown = ft.phase_indices(history)
-    assert [p for _, p in shown[-2:]] == [ft.TOP, ft.STEADY]
-    assert history["time"].values[shown[-2][0]] == 0.5 and shown[-1][0] == history.sizes["time"] - 1
-    assert len(shown) == 2 + len(ft.RAMP_FRACTIONS)
-
-
 @pytest.mark.parametrize("values", [[1.0, 1.01, 1.02, 5.0], [0.0, 0.0, 0.0], [9.9, 9.95, 10.0]])
 def test_labels_keep_their_order_and_distance(values):
     placed = spread(values, 0.5, 0, 10)
@@ -230,19 +212,6 @@ def test_boundaries_are_closed_and_offset_by_the_layers_thickness():
     assert top == pytest.approx(expected, abs=1e-3)
     with pytest.raises(ValueError, match="half"):
         boundaries(mesh.right_half())
-
-
-def test_loops_joins_edges_of_any_direction():
-    line, closed = sorted(loops(np.array([[0, 1], [2, 1], [2, 0], [5, 4], [5, 6]])), key=len)
-    assert closed[0] == closed[-1] and set(closed) == {0, 1, 2}
-    assert line.tolist() in ([4, 5, 6], [6, 5, 4])
-
-
-def test_mesh_figure_shows_every_element_once_in_five_shades():
-    made, mesh = frame("3-5"), synthetic.mesh()
-    assert made["element"].nunique() == len(mesh.cells)
-    assert set(made["layer"].dropna()) == set(LAYERS)
-    assert quality_of(made)["nodes (1)"] == len(mesh.points)
 
 
 # --- specs, files and tables ----------------------------------------------------------------------

@@ -408,6 +408,12 @@ def together(frame: DataFrame, columns: Sequence[str]) -> DataFrame:
 # --- the surface above ----------------------------------------------------------------------------
 
 
+def solid(ax: Axes, x: Series, y: Series, top: float, **look: object) -> None:
+    """A solid from its lower side up to a height: pale, its lower side as a line."""
+    ax.fill_between(x, y, np.maximum(y, top), color=style.PALE, lw=0)
+    ax.plot(x, y, **look)
+
+
 def shape_of(frame: DataFrame) -> DataFrame:
     """The rows that hold the shape of the stroked surface."""
     return frame[frame["source"].str.endswith("shape of the stimulus")]
@@ -418,8 +424,7 @@ def draw_surface(ax: Axes, frame: DataFrame) -> None:
     rows = shape_of(frame)
     x, y = rows[DISTANCE].to_numpy(), rows[HEIGHT].to_numpy()
     top = y.max() + 0.35
-    ax.fill_between(x, y, top, color=style.PALE, lw=0)
-    ax.plot(x, y, color=style.INK, lw=0.9)
+    solid(ax, x, y, top, color=style.INK, lw=0.9)
     ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0], ylabel="height\n(mm)")
     ax.tick_params(labelbottom=False)
     piece = (rows[CURVATURE].diff() != 0).cumsum()

@@ -22,7 +22,6 @@ from cysyk1999.figures.geometry import (
     NOTE,
     boundaries,
     densify,
-    draw_indenter,
     draw_mesh,
     inward,
     layer_patches,
@@ -33,7 +32,7 @@ from cysyk1999.figures.geometry import (
     stratum_corneum,
     surface_deflection,
 )
-from cysyk1999.figures.grammar import Data, Figure, Page, Panels, above, stacked
+from cysyk1999.figures.grammar import Data, Figure, Page, Panels, stacked
 from cysyk1999.measures.errors import PARTS, Curve, curve_errors, number_errors, over_time
 from cysyk1999.measures.quantities import DEFLECTION, DEPTH, NEWTON, TIME, X, Y
 from cysyk1999.measures.runs import NINE, Runs
@@ -410,6 +409,12 @@ def held(
 # --- 3-10, 3-11: sections under indenters ---------------------------------------------------------
 
 
+def draw_indenter(ax: Axes, rows: DataFrame) -> None:
+    """The indenter from its lower side up to where the picture ends."""
+    side = rows[rows["layer"] == "indenter"]
+    axs.solid(ax, side[X], side[Y], 7.4, color=style.GREY, lw=0.7)
+
+
 LINED = ("skin", "corneum", "dermis", "fat", "bone")
 """Boundaries that are drawn, from the outside in."""
 
@@ -523,7 +528,6 @@ FIGURES = (
             names=PROFILES,
             across=3,
             fill=at_depths,
-            title=above,
             limit="y",
             alike=True,
             set={"xticks": [-10, -5, 0, 5, 10]},
@@ -585,7 +589,6 @@ FIGURES = (
             across=2,
             fill=shaded_section,
             limit="",
-            title=above,
             share={"sharey": True},
             set={
                 "aspect": "equal",
@@ -616,7 +619,6 @@ FIGURES = (
             fill=boundaries_of_layers,
             extra=name_boundaries,
             limit="",
-            title=above,
             share={"sharex": True, "sharey": True},
             set={
                 "aspect": "equal",

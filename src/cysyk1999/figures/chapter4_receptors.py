@@ -461,7 +461,7 @@ def nine_frequencies(ax, frame, spec):
     """Nine traces of predicted frequency, labelled at the right, over the rates they are made
     from.
     """
-    ends, both = {}, frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
+    ends, both = {}, axs.together(frame, (FREQUENCY, IMPULSE_RATE))
     axs.limit_axes(ax, both[~(both[TIME] > 2)], y=FREQUENCY, text=False)
     for label in SURFACES:
         rows, look = frame[frame["surface"] == label], axs.look(label)

@@ -25,7 +25,6 @@ from cysyk1999.figures.grammar import (
     Lines,
     Page,
     Panels,
-    above,
     nine,
     stack,
     stacked,
@@ -204,14 +203,12 @@ def three_locations(fig, frame, spec):
         height = np.interp(at, shape[DISTANCE], shape[HEIGHT])
         for ax in (trace, window):
             ax.plot(at, height, color=style.HIGHLIGHT, **star)
-        window.fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
-        window.plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
+        axs.solid(window, shape[DISTANCE], shape[HEIGHT], 1.0, color=style.INK, lw=1.0)
         ends = axs.from_source(rows, "thesis axis range")[DISTANCE].dropna()
         low, high = (ends.min(), ends.max()) if len(ends) else (at - 4, at + 4)
         window.set(xlim=(low, high), ylim=(-0.52, 0.36))
         window.set(xlabel=DISTANCE.label, title=f"at {at:g} mm")
-        touching.fill_between(surface[X], surface[Y], 6.4, color=style.PALE, lw=0)
-        touching.plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
+        axs.solid(touching, surface[X], surface[Y], 6.4, color=style.GREY, lw=0.8)
         touching.plot(skin[X], skin[Y], color=style.INK)
         touching.set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
         axs.limit_axes(pressed, frame, y=P, text=column == 2)
@@ -375,7 +372,6 @@ FIGURES = (
             AT_NODES,
             5.6,
             by="panel",
-            title=above,
             extra=two_axes,
             limit="x",
             fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P}),

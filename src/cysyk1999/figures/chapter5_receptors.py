@@ -19,7 +19,7 @@ from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
 from cysyk1999.figures.chapter5 import DEEP, OTHER, SHALLOW, TEN, TEN_RUN
-from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, above, stack, stacked
+from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, stack, stacked
 from cysyk1999.measures.errors import (
     PARTS,
     Companion,
@@ -307,22 +307,14 @@ def plate_note(frame: DataFrame) -> list[str]:
 
 def against_velocity(ax, frame, spec):
     """A line a convexity, named at its end."""
-    (y,), own = spec.y, frame[frame["source"] == PREDICTED]
-    curves = dict(list(own.groupby("convexity", sort=False)))
-    looks = {label: {"color": style.curvature_colour(float(label))} for label in curves}
-    for label, rows in curves.items():
-        look = looks[label] | {"marker": "o", "ms": 3, "lw": 1.0}
+    (y,), own, ends = spec.y, frame[frame["source"] == PREDICTED], {}
+    for label, rows in own.groupby("convexity", sort=False):
+        look = style.look_of("curvature (1/m)", label) | {"marker": "o", "ms": 3, "lw": 1.0}
         axs.curve(ax, rows, SPEED, y, points=True, **look)
+        ends[label] = tuple(rows[[SPEED, y]].iloc[-1])
     measured = axs.from_source(frame, "measured")
     ax.plot(measured[SPEED], measured[y], "x", color=style.INK, ms=4)
-    low, high = ax.get_ylim()
-    gap = 0.062 * (high - low)
-    ends = [rows[y].iloc[-1] for rows in curves.values()]
-    places = style.spread(ends, gap, low + gap / 2, high - 2 * gap)
-    for label, end, place in zip(curves, ends, places, strict=True):
-        ax.plot([40.4, 42.3], [end, place], **looks[label], lw=0.7, clip_on=False)
-        ax.text(42.5, place, label, va="center", fontsize=6.5)
-    ax.text(42.5, max(places) + 1.2 * gap, "curvature\n(1/m)", va="bottom", fontsize=6.5)
+    style.label_ends(ax, ends, 42.3, "curvature (1/m)")
 
 
 def rates_from_zero(panels, frame):
@@ -549,7 +541,6 @@ FIGURES = (
             across=2,
             fill=draw_rate,
             marked="none",
-            title=above,
             extra=legend_of_the_first,
             share={"sharex": True},
         ),

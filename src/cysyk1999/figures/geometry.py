@@ -253,11 +253,3 @@ def section_errors(history: Dataset, coarse: Companion | None) -> Errors:
 
     layers = [partial(sunk, layer=layer) for layer in ("dermis", "fat")]
     return number_errors(history, coarse, *layers)
-
-
-def draw_indenter(ax: Axes, rows: DataFrame) -> None:
-    """The indenter from its lower side up to where the picture ends."""
-    side = rows[rows["layer"] == "indenter"]
-    if len(side):
-        ax.fill_between(side[X], side[Y], np.maximum(side[Y], 7.4), color=style.PALE, lw=0)
-        ax.plot(side[X], side[Y], color=style.GREY, lw=0.7)

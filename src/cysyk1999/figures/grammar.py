@@ -531,7 +531,7 @@ class Panels:
         Column, its values in order, and how many panels stand side by side. Without `by` the names
         may be quantities across and up, a panel each, of all rows.
     title
-        ``title(ax, name)``: names a panel.
+        ``title(ax, name)``: names a panel of those `by` a column.
     fill
         What is drawn in each: `Lines`, `Phases` or another ``fill(ax, rows, spec)``.
     limit
@@ -550,7 +550,7 @@ class Panels:
     by: str = ""
     names: Collection = ("",)
     across: int = 1
-    title: Callable[[Axes, object], None] | None = None
+    title: Callable[[Axes, object], None] = above
     fill: Callable[[Axes, DataFrame, Figure], None] = Lines()
     limit: str = "xy"
     alike: bool = False
@@ -583,7 +583,7 @@ class Panels:
             self.fill(ax, rows, of)
             ax.set(**self.set)
             tops.append(ax.get_ylim()[1])
-            if self.title:
+            if self.by:
                 self.title(ax, name)
             for axis, q in ((ax.xaxis, of.x), (ax.yaxis, of.y[0])):
                 if q in IN_KILO:
@@ -620,8 +620,7 @@ def nine(names: Collection, height: float, **options) -> Panels:
     """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom
     right.
     """
-    options = {"by": "surface", "title": above} | options
-    return Panels(height, names=names, across=3, **options)
+    return Panels(height, names=names, across=3, **{"by": "surface"} | options)
 
 
 def stack(height: float, **options) -> Panels:

@@ -22,7 +22,7 @@ from cysyk1999.figures.geometry import (
     quality_of,
     stratum_corneum,
 )
-from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, above, stacked
+from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, stacked
 from cysyk1999.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP
 from cysyk1999.measures.errors import curve_errors, over_stroke, total
 from cysyk1999.measures.quantities import SED, STROKE_TIME, TIME, X, Y, sed
@@ -202,7 +202,6 @@ FIGURES = (
             across=2,
             limit="",
             fill=Lines(by="surface"),
-            title=above,
             extra=named_at_both,
             set={"xlim": (0, 3.05)},
         ),
