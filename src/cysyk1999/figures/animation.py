@@ -17,10 +17,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from pandas import DataFrame
 from PIL import Image
 from xarray import Dataset
 
+from cysyk1999.figures.geometry import boundaries, mesh_of
 from cysyk1999.measures.quantities import IMPULSE_RATE, SED, TIME
 from cysyk1999.measures.responses import curvature_of, is_stroke, predicted_rate
 from cysyk1999.publishing import style
@@ -29,7 +29,7 @@ from fingerpad.measures.features import PRESSURE, force_gf, profile
 from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.results import read_history, scene_of
-from fingerpad.specimen.element_kinds import kind_of
+from fingerpad.specimen.element_kinds import KINDS
 
 SIZE, DPI = (5.4, 5.7), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
@@ -69,15 +69,13 @@ def _coloured(history: Dataset, judged: np.ndarray) -> tuple[np.ndarray, Normali
     """Values (snapshot, element) to be coloured, their scale and label: strain energy if there is
     some, else mean stress. The `judged` elements set the scale.
     """
-    if FIELD in history:
-        values, label = np.maximum(history[FIELD].values, 1e-6), "strain energy density (Pa)"
-    else:
-        values, label = (
-            -1e-3 * history["snapshot_pressure"].values,
-            "mean stress, compression (kPa)",
-        )
-    high = float(np.percentile(values[:, judged], 99.8))
-    return values, LogNorm(3e-3 * high, high) if FIELD in history else Normalize(0.0, high), label
+    energy = FIELD in history
+    values = history[FIELD if energy else "snapshot_pressure"].values
+    values = np.maximum(values, 1e-6) if energy else -1e-3 * values
+    high = np.percentile(values[:, judged], 99.8)
+    if energy:
+        return values, LogNorm(3e-3 * high, high), "strain energy density (Pa)"
+    return values, Normalize(0.0, high), "mean stress, compression (kPa)"
 
 
 def drawn(history: Dataset) -> list[np.ndarray]:
@@ -85,12 +83,12 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     time = history["time"].values
     at = [int(abs(time - t).argmin()) for t in history["snapshot_time"].values]
     shape, heights = profile_and_height(history)
-    cells = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
-    rest = 1e3 * history["node_position"].values
-    points = rest + 1e3 * history["snapshot_displacement"].values
-    x, y = rest[cells].mean(axis=1).T
+    mesh = mesh_of(history)
+    cells = mesh.cells[:, : KINDS[mesh.element].corners]
+    borders = [line[np.isin(line, cells)] for line in boundaries(mesh).values()]
+    points = 1e3 * (mesh.points + history["snapshot_displacement"].values)
+    x, y = 1e3 * mesh.points[cells].mean(axis=1).T
     values, norm, label = _coloured(history, (y > JUDGED) & (abs(x) < 8))
-    borders = _borders(cells, history["element_region"].values)
     upper = history["skin_y"].values > 0
     stroke, rate, force = is_stroke(history), predicted_rate(history), force_gf(history)
     distance = 1e3 * history["stroke_distance"].values if stroke else np.zeros(len(time))
@@ -101,8 +99,8 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     section, below = fig.add_subplot(grid[0, :]), fig.add_subplot(grid[1:, 0])
     felt, answer = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[2, 1])
     look = {"cmap": style.FIELD, "norm": norm, "edgecolor": "face", "lw": 0.2}
-    body = PolyCollection(points[0][cells], array=values[0], **look)
-    lines = LineCollection(points[0][borders], colors=style.INK, lw=0.7)
+    body = PolyCollection([], **look)
+    lines = LineCollection([], colors=style.INK, lw=0.7)
     section.add_collection(body)
     section.add_collection(lines)
     section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal")
@@ -111,8 +109,8 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     across = np.linspace(-HALF_WIDTH, HALF_WIDTH, 721)
     reach = 0.575e3 * history["contact_width"].values.max() + 1.5 * stroke
     highest = 1.05e-3 * history[PRESSURE].values[at].max()
-    below.set(xlim=(-reach, reach), ylim=(0, highest))
-    below.set(xlabel="x (mm)", ylabel="contact pressure (kPa)")
+    below.set(xlim=(-reach, reach), xlabel="x (mm)")
+    below.set(ylim=(0, highest), ylabel="contact pressure (kPa)")
     (curve,) = below.plot([], [], color=style.INK)
     start = time[history["leg"].values > 0][0] if stroke else 0.0
     dots = {}
@@ -135,7 +133,7 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         block.set_data(across[shown], surface[shown], HIGH + 1)
         body.set_verts(points[k][cells])
         body.set_array(values[k])
-        lines.set_segments(points[k][borders])
+        lines.set_segments([points[k][line] for line in borders])
         place, pressure = profile(history, index)
         curve.set_data(1e3 * place[upper], 1e-3 * pressure[upper])
         for column, dot in dots.items():
@@ -154,17 +152,6 @@ def _heading(history: Dataset) -> str:
         return f"stroked at {1e3 * speed:g} mm/s   "
     curvature = curvature_of(history)
     return f"K = {curvature:.0f} 1/m   " if curvature else ""
-
-
-def _borders(cells: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """Node pairs (n, 2) of the element edges on the rim and between layers; `cells` are corner
-    nodes.
-    """
-    pairs = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2))
-    sides = DataFrame(pairs, columns=["a", "b"]).assign(region=np.repeat(region, cells.shape[1]))
-    owners = sides.groupby(["a", "b"])["region"].agg(["size", "nunique"])
-    shown = (owners["size"] == 1) | (owners["nunique"] > 1)
-    return np.array(owners.index[shown].tolist())
 
 
 def animations(job: SimpleNamespace) -> None:

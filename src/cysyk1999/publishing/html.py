@@ -58,8 +58,9 @@ def report_pages(job: SimpleNamespace) -> None:
     """`shown` and `published` (pictures, CSV files of tables), their `titles`; `judged` (chapters'
     pages, or none) -> `pages`.
     """
-    judged = "".join(Path(path).read_text(encoding="utf-8") for path in getattr(job, "judged", ()))
-    sources = [Path(path) for path in (*getattr(job, "shown", ()), *getattr(job, "published", ()))]
+    of = {"shown": (), "published": (), "judged": ()} | vars(job)
+    judged = "".join(Path(path).read_text(encoding="utf-8") for path in of["judged"])
+    sources = map(Path, (*of["shown"], *of["published"]))
     for source, title, target in zip(sources, job.titles, job.pages, strict=True):
         write_text(Path(target), page(title, *_parts(source, title, judged)))
 
@@ -69,17 +70,13 @@ def _parts(source, title, judged):
     footer = f"<footer>{source}; data: {data if data.exists() else 'none'}<br>{CITE}</footer>"
     if source.suffix == ".csv":
         chapters = sorted(source.parent.glob(f"{source.stem}_chapter?.md"))
-        texts = [
+        pages = [
             path.read_text(encoding="utf-8") for path in (source.with_suffix(".md"), *chapters)
         ]
-        return *(
-            of_markdown(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)) for text in texts
-        ), footer
-    rows = [
-        line
-        for line in judged.splitlines()
-        if line.startswith(f"| {source.stem.removeprefix('fig_')}: ")
-    ]
+        without_links = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", "\n\n".join(pages))
+        return of_markdown(without_links), footer
+    number = source.stem.removeprefix("fig_")
+    rows = re.findall(rf"^\| {re.escape(number)}: .*$", judged, re.MULTILINE)
     head = (
         "## The thesis beside this\n\n| quantity | thesis | here | verdict | why "
         "|\n|---|---|---|---|---|\n"

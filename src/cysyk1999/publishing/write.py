@@ -18,7 +18,7 @@ from pandas import DataFrame
 from PIL import Image
 
 from cysyk1999.publishing.style import theme
-from fingerpad.files import write_atomically
+from fingerpad.files import write_atomically, write_text
 
 DPI = 300
 COLOURS = 256
@@ -77,7 +77,7 @@ def settle(fig: Figure, dpi: float = DPI) -> None:
     for axes in fig.axes:
         for which in ("original", "active"):
             place = axes.get_position(original=which == "original")
-            axes.set_position([round(edge, 12) for edge in place.bounds], which=which)
+            axes.set_position(np.round(place.bounds, 12), which=which)
 
 
 def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
@@ -138,7 +138,7 @@ def publish_table(frame: DataFrame, csv_path: str | os.PathLike) -> None:
     text = markdown(frame[frame.attrs.get("columns", list(frame.columns))])
     if summary := frame.attrs.get("summary"):
         text = f"{summary}\n\n{text}"
-    write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
+    write_text(path.with_suffix(".md"), text)
 
 
 def join_tables(job: SimpleNamespace) -> None:
