@@ -588,7 +588,6 @@ FIGURES = (
             extra=name_layers,
             across=2,
             fill=shaded_section,
-            limit="",
             share={"sharey": True},
             set={
                 "aspect": "equal",
@@ -618,7 +617,6 @@ FIGURES = (
             across=3,
             fill=boundaries_of_layers,
             extra=name_boundaries,
-            limit="",
             share={"sharex": True, "sharey": True},
             set={
                 "aspect": "equal",

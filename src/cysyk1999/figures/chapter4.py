@@ -533,7 +533,6 @@ FIGURES = (
         nine(
             SURFACES,
             5.9,
-            limit="y",
             set=HOLD,
             fill=Lines(looks={SED: axs.FIRST, P_SCALED: axs.SECOND}),
             extra=energy_and_pressure,
@@ -564,9 +563,7 @@ FIGURES = (
             UM,
             6.2,
             by=RECEPTOR,
-            limit="y",
             set=HOLD,
-            fill=Lines(by="surface"),
             title=name_depth,
             extra=depths_and_bars,
         ),

@@ -794,7 +794,7 @@ FIGURES = (
         TIME,
         (SED, SED_LAW),
         {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
-        nine(SURFACES, 5.8, fill=energy_and_law, limit="y", set=HOLD | {"xlim": (0, 2.58)}),
+        nine(SURFACES, 5.8, fill=energy_and_law, set=HOLD | {"xlim": (0, 2.58)}),
         rows=energy_by_pressure,
     ),
     of_rates(

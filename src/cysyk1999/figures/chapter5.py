@@ -431,7 +431,6 @@ FIGURES = (
             fill=Lines(
                 by="series",
                 names={TEN: f"stroked at {TEN}"},
-                bars=True,
                 looks={
                     "ramp and hold": {"marker": "o", "ms": 3.5, "color": style.INK},
                     TEN: OTHER | {"marker": "s", "ms": 3.5},

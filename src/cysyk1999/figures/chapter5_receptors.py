@@ -376,7 +376,6 @@ def legend_of_the_first(panels, frame):
     first.legend(loc="upper right")
 
 
-RECORDED = {"color": style.HIGHLIGHT}
 BURST_RATES = {BURST_RATE: "burst_rate"}
 BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
 PRESSED = {"marker": "o", "ms": 4, "color": style.INK, "clip_on": False, "zorder": 3}
@@ -413,7 +412,7 @@ FIGURES = (
             names=tuple((CURVATURE, y) for y in BURSTS),
             extra=rates_from_zero,
             across=2,
-            fill=Lines(by="series", looks={TEN: OWN_BURSTS}, recorded=RECORDED, bars=True),
+            fill=Lines(looks={TEN: OWN_BURSTS}),
         ),
         rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS),
         measured="impulse_rates",
@@ -462,9 +461,7 @@ FIGURES = (
             by="panel",
             names=FOUR,
             across=2,
-            fill=Lines(
-                by="series", looks=dict.fromkeys(FOUR, OWN_BURSTS), recorded=RECORDED, bars=True
-            ),
+            fill=Lines(looks=dict.fromkeys(FOUR, OWN_BURSTS)),
             title=lambda ax, series: ax.set_title(f"v = {series}"),
         ),
         rows=partial(burst_rows, runs=FOUR, columns={BURST_TIME: "burst_time"}),
@@ -483,14 +480,13 @@ FIGURES = (
             legend={"loc": "upper left", "handlelength": 3},
             fill=Lines(
                 by="series",
-                recorded=RECORDED | {"label": "recorded, stroked"},
-                bars=True,
                 looks={
                     STROKED: {"ls": "-", "marker": "s", "ms": 3.5, "color": style.HIGHLIGHT},
                     RESPONSES["peak"]: PRESSED | {"ls": style.DASHED},
                     RESPONSES["end"]: PRESSED | {"ls": style.DOTTED, "mfc": "white"},
                 },
-                names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())},
+                names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())}
+                | {"recorded": "recorded, stroked"},
             ),
         ),
         rows=stroked_and_pressed,

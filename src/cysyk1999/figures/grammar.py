@@ -443,19 +443,17 @@ class Figure:
 @dataclass(frozen=True, kw_only=True)
 class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
+    Those of a figure whose points are `joined` are points, whose errors are drawn as bars, not as
+    bands. What was recorded is drawn as crosses.
 
     Attributes
     ----------
     looks
         Of names (in their order) and quantities: over those of `axes.look`.
     names
-        What a legend says.
+        What a legend says; also of what was ``recorded``.
     ends
         Place (x) where surfaces are named directly.
-    recorded
-        What points look like that were measured.
-    bars
-        Whether they are points, whose errors are drawn as bars, not as bands.
     hidden
         Quantity -> that which must be above 0 where it is shown.
     """
@@ -464,8 +462,6 @@ class Lines:
     looks: Mapping[str, Look] = field(default_factory=dict)
     names: Mapping[str, str] = field(default_factory=dict)
     ends: float | None = None
-    recorded: Look = field(default_factory=dict)
-    bars: bool = False
     hidden: Mapping[str, str] = field(default_factory=dict)
 
     def __call__(self, ax: Axes, rows: DataFrame, spec: Figure) -> None:
@@ -480,12 +476,12 @@ class Lines:
                 shown = curve if q.checked else curve.assign(**dict.fromkeys(PARTS, np.nan))
                 if q in self.hidden:
                     shown = shown.assign(**{q: shown[q].where(shown[self.hidden[q]] > 0)})
-                axs.curve(ax, shown, spec.x, q, label=label, points=self.bars, **look)
+                axs.curve(ax, shown, spec.x, q, label=label, points=bool(spec.joined), **look)
             ends[name] = tuple(curve[[spec.x, spec.y[-1]]].iloc[-1])
         points = axs.from_source(rows, "measured")
-        if self.recorded and len(points):
-            look = {"ls": "none", "marker": "x", "label": "recorded"} | self.recorded
-            ax.plot(points[spec.x], points[spec.y[0]], **look)
+        if len(points):
+            look = {"color": style.HIGHLIGHT, "label": self.names.get("recorded", "recorded")}
+            ax.plot(points[spec.x], points[spec.y[0]], "x", **look)
         if self.ends is not None:
             style.label_ends(ax, ends, self.ends, "curvature (1/m)")
 

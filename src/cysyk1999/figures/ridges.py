@@ -201,7 +201,6 @@ FIGURES = (
             names=PLACES,
             across=2,
             limit="",
-            fill=Lines(by="surface"),
             extra=named_at_both,
             set={"xlim": (0, 3.05)},
         ),
