@@ -1,4 +1,4 @@
-"""The jobs of the calibration: modulus, Prony series and friction."""
+"""The jobs of the calibration: modulus and friction."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from collections.abc import Iterator
 from cysyk1999.job import Job, part
 from cysyk1999.project import Project
 from cysyk1999.studies.calibration.force import calibrate_forces
-from cysyk1999.studies.calibration.friction import calibrate_friction_job
-from cysyk1999.studies.calibration.strokes import strokes_with_friction
+from cysyk1999.studies.calibration.friction import (
+    STROKE,
+    calibrate_friction_job,
+    strokes_with_friction,
+)
 
-RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
+RAMP, PLATE = "calibration_ramp_hold", "calibration_plate"
 
 
 @part("calibration", in_default=True)
@@ -19,7 +22,7 @@ def calibration(project: Project) -> Iterator[Job]:
     c = project.config
     if not c.calibration_scenes:
         return
-    names, estimates = ["fit", "identifiability", "residuals"], ["estimates"]
+    names, estimates = ["fit", "identifiability"], ["estimates"]
 
     def data(*names: str) -> list[str]:
         return [project.result(f"calibration/{name}.csv") for name in names]
