@@ -143,11 +143,12 @@ def fit_constant(curve: ElasticCurve, depth, force, length: float, relative: boo
     return Fit(value, value / half, value * half, len(force), rss, certainty)
 
 
-def length_correlation(fit: Fit, factor: float = 10.0) -> float:
+def length_correlation(fit: Fit) -> float:
     """Correlation of the logarithms of constant and contact length when both are fitted and each
-    is known beforehand to within `factor` (one standard deviation): force tells their product only.
+    is known beforehand to within a factor of ten (one standard deviation): force tells their
+    product only.
     """
-    return -fit.certainty / (fit.certainty + 1 / math.log(factor) ** 2)
+    return -fit.certainty / (fit.certainty + 1 / math.log(10) ** 2)
 
 
 def group_interval(values: Iterable[float]) -> tuple[float, float, float]:

@@ -277,9 +277,7 @@ def _share_of_skin(law: SpatialSum, sample: SkinSample, skin: np.ndarray) -> flo
     def misfit(share: float) -> float:
         return rms(sample.by(law, share * skin) - sample.energy)
 
-    shares = np.arange(0, 1.505, 0.01)
-    near = 10 * int(np.argmin([misfit(share) for share in shares[::10]]))
-    return float(min(shares[max(near - 10, 0) : near + 11], key=misfit))
+    return float(min(np.arange(0, 1.505, 0.01), key=misfit))
 
 
 def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
