@@ -16,7 +16,7 @@ from cysyk1999.studies.explanations.run import (
 from fingerpad import load_scene
 
 pytestmark = pytest.mark.unit
-REFERENCE = "config/reference/thesis_numbers.csv"
+REFERENCE, SCENES = "config/reference/thesis_numbers.csv", "config/scenes"
 
 
 @pytest.mark.parametrize("name", READINGS)
@@ -25,32 +25,24 @@ def test_a_reading_changes_what_it_says(name):
     they name, everywhere.
     """
     reading = READINGS[name]
-    press, stroke, steps = (
-        load_scene(f"config/scenes/{scene}.yaml")
-        for scene in ("ramp40_k210", "stroke_10", "step_sub")
-    )
-    read = [reading.of(press, False), reading.of(stroke, True), reading.of(steps, True)]
-    same = [
-        now.varied({"accuracy": was.accuracy}) == was
-        for now, was in zip(read, (press, stroke, steps), strict=True)
+    scenes = [
+        load_scene(f"{SCENES}/{scene}.yaml") for scene in ("ramp40_k210", "stroke_10", "step_sub")
     ]
-    wanted = {
-        CONTROL: [True, True, True],
-        "depth kept": [True, False, True],
-        "no friction": [True, False, True],
-    }
-    wanted |= {name: [True, True, True] for name in READ_ONLY}
-    wanted |= {name: [False, False, False] for name in READINGS if READINGS[name].deeper}
-    about_strokes = [True, False, False]
-    assert same == wanted.get(name, about_strokes if not reading.everywhere else [False] * 3)
-    assert read[1].motion[0].force == pytest.approx(reading.share * stroke.motion[0].force)
-    assert read[1].motion[1].keep == reading.keeps
-
-
-def published(**verdicts):
-    columns = ["id", "figure", "quantity", "condition", "simulated", "verdict"]
-    rows = [(k, "5-12", k, "", 1.0, verdict) for k, verdict in verdicts.items()]
-    return pd.DataFrame(rows, columns=columns)
+    read = [reading.of(scene, k > 0) for k, scene in enumerate(scenes)]
+    same = [
+        now.varied({"accuracy": was.accuracy}) == was for now, was in zip(read, scenes, strict=True)
+    ]
+    wanted = [not reading.everywhere, False, False]
+    if name in (CONTROL, *READ_ONLY):
+        wanted = [True, True, True]
+    elif reading.deeper:
+        wanted = [False, False, False]
+    elif name in ("depth kept", "no friction"):
+        wanted = [True, False, True]
+    assert same == wanted
+    press, slide = read[1].motion[:2]
+    assert press.force == pytest.approx(reading.share * scenes[1].motion[0].force)
+    assert slide.keep == reading.keeps
 
 
 def reading(**verdicts):
@@ -58,53 +50,56 @@ def reading(**verdicts):
     return pd.DataFrame(rows, columns=["id", "simulated", "verdict"])
 
 
+def published(**verdicts):
+    return reading(**verdicts).assign(figure="5-12", quantity="", condition="", simulated=1.0)
+
+
 HOLDS, FAILS = "trend_holds", "trend_fails"
 
 
 @pytest.mark.parametrize(
-    "comparison, found, explained, counts",
+    "name, verdicts, explained, counts",
     [
         # TR28 holds without the reading already, TR30 fails with it as well
         (
-            {"TR28": FAILS, "TR29": FAILS, "TR30": FAILS, "TR37": HOLDS},
+            "no friction",
             {
-                CONTROL: {"TR28": HOLDS, "TR29": FAILS, "TR30": FAILS, "TR37": HOLDS},
-                "no friction": {"TR28": HOLDS, "TR29": HOLDS, "TR30": FAILS, "TR37": FAILS},
+                "TR28": (FAILS, HOLDS, HOLDS),
+                "TR29": (FAILS, FAILS, HOLDS),
+                "TR30": (FAILS, FAILS, FAILS),
+                "TR37": (HOLDS, HOLDS, FAILS),
             },
-            {"TR28": "", "TR29": "no friction", "TR30": ""},
-            ["no friction", 1, 1],
+            {"TR28": False, "TR29": True, "TR30": False},
+            [1, 1],
         ),
         # a reading explains nothing by what it was given
         (
-            {"T323": "outside", "T108": "outside"},
-            {
-                CONTROL: {"T323": "outside", "T108": "outside"},
-                "smaller radius": {"T323": "inside", "T108": "inside"},
-            },
-            {"T323": "", "T108": "smaller radius"},
-            ["smaller radius", 1, 0],
+            "smaller radius",
+            {"T323": ("outside", "outside", "inside"), "T108": ("outside", "outside", "inside")},
+            {"T323": False, "T108": True},
+            [1, 0],
         ),
         # another energy is held against the published runs, not against those at draft accuracy
         (
-            {"TR74": FAILS, "TR82": FAILS},
-            {
-                CONTROL: {"TR74": HOLDS, "TR82": FAILS},
-                PUBLISHED: {"TR74": FAILS, "TR82": HOLDS},
-                "energy: network": {"TR74": HOLDS, "TR82": HOLDS},
-            },
-            {"TR74": "energy: network", "TR82": ""},
-            ["energy: network", 1, 0],
+            "energy: network",
+            {"TR74": (FAILS, HOLDS, HOLDS, FAILS), "TR82": (FAILS, FAILS, HOLDS, HOLDS)},
+            {"TR74": True, "TR82": False},
+            [1, 0],
         ),
     ],
 )
-def test_explained_is_what_holds_with_a_reading_and_not_without(
-    comparison, found, explained, counts
-):
-    found = {name: reading(**verdicts) for name, verdicts in found.items()}
-    table = explanations(published(**comparison), found, REFERENCE)
-    assert dict(table.set_index("id")["explained_by"]) == explained
-    rows = turned(published(**comparison), found, REFERENCE)
-    assert rows[["reading", "makes_hold", "makes_fail"]].to_numpy().tolist() == [counts]
+def test_explained_is_what_holds_with_a_reading_and_not_without(name, verdicts, explained, counts):
+    """Verdicts: of the published table, of the control, of the reading, of the published runs."""
+    columns = [
+        dict(zip(verdicts, column, strict=True)) for column in zip(*verdicts.values(), strict=True)
+    ]
+    comparison = published(**columns[0])
+    names = (CONTROL, name, PUBLISHED)
+    found = {name: reading(**column) for name, column in zip(names, columns[1:], strict=False)}
+    table = explanations(comparison, found, REFERENCE).set_index("id")
+    assert dict(table["explained_by"] == name) == explained
+    rows = turned(comparison, found, REFERENCE)
+    assert rows[["reading", "makes_hold", "makes_fail"]].to_numpy().tolist() == [[name, *counts]]
 
 
 def test_summary_counts_what_is_right_and_what_is_explained():

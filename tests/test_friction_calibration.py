@@ -21,6 +21,7 @@ from cysyk1999.studies.calibration.friction import (
     calibrate_friction,
     rounded,
     stretch,
+    waves,
 )
 from fingerpad import load_scene
 from fingerpad.scenes.families import read_family
@@ -28,31 +29,29 @@ from fingerpad.scenes.families import read_family
 pytestmark = pytest.mark.unit
 
 ROOT = Path(__file__).parents[1]
-REFERENCE = ROOT / "config" / "reference"
+REFERENCE, SCENES = ROOT / "config" / "reference", ROOT / "config" / "scenes"
+PUBLISHED = REFERENCE / "friction.csv"
 SWEEP = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0)
 NUMBERS = pd.DataFrame({"id": [STRETCH, AXIS], "low": [1.0, -1.25], "high": [np.nan, -0.5]})
 
 
 @cache
 def surface():
-    return load_scene(ROOT / "config" / "scenes" / f"{STROKE}.yaml")
+    return load_scene(SCENES / f"{STROKE}.yaml")
 
 
-def history(coefficient, law=lambda mu: 1.5e-3 * mu, ripple=0.1, way=50e-3, start=0.0, name=STROKE):
-    """A stroke that drags the centre by law(mu) in the mean over the waves; one whole period of a
-    ripple about it.
+def linear(coefficient):
+    return 1.5e-3 * coefficient
+
+
+def history(coefficient, law=linear, way=50e-3, name=STROKE):
+    """A stroke that drags the centre by law(coefficient) in the mean over the waves; one whole
+    period of a ripple about it.
     """
-    ends = surface().stimulus.lead_in, surface().stimulus.length - surface().stimulus.run_out
-    x = np.concatenate(
-        [
-            [start],
-            np.sort(
-                np.concatenate([np.linspace(start, way, 400), [end for end in ends if end < way]])
-            ),
-        ]
-    )
-    drag = law(coefficient) * (1 + ripple * np.sin(2 * np.pi * (x - ends[0]) / (ends[1] - ends[0])))
-    drag = np.where((x < ends[0]) | (x > ends[1]), 0.2 * drag, drag)  # the flats must not count
+    start, end = waves(xr.Dataset(attrs={"scene": json.dumps(surface().canonical())}))
+    x = np.sort([0.0, *np.linspace(0, way, 400), start, *([end] if end < way else [])])
+    drag = law(coefficient) * (1 + 0.1 * np.sin(2 * np.pi * (x - start) / (end - start)))
+    drag = np.where((x < start) | (x > end), 0.2 * drag, drag)  # the flats must not count
     scene = surface().canonical() | {"friction": coefficient, "name": name}
     return xr.Dataset(
         {
@@ -64,39 +63,24 @@ def history(coefficient, law=lambda mu: 1.5e-3 * mu, ripple=0.1, way=50e-3, star
     )
 
 
-def study(law=lambda mu: 1.5e-3 * mu, histories=None, sweep=SWEEP, numbers=NUMBERS):
-    return calibrate_friction(
-        [history(mu, law) for mu in sweep],
-        histories or {},
-        numbers,
-        read_friction(REFERENCE / "friction.csv"),
-    )
-
-
-def estimate(found, quantity, study="friction"):
-    table = found[1]
-    rows = table[(table["study"] == study) & (table["quantity"] == quantity)]
-    assert len(rows) == 1
-    return float(rows["estimate"].iloc[0])
+def study(law=linear, histories=None, numbers=NUMBERS):
+    """The estimates, by study and quantity."""
+    sweep, published = [history(mu, law) for mu in SWEEP], read_friction(PUBLISHED)
+    _, estimates = calibrate_friction(sweep, histories or {}, numbers, published)
+    return estimates.set_index(["study", "quantity"])["estimate"].sort_index()
 
 
 def test_stretch_is_the_mean_and_range_over_the_waves_alone():
     point = stretch(history(0.6))
-    assert point.coefficient == 0.6
-    assert point.mean == pytest.approx(-0.9e-3, rel=5e-3)
-    assert (point.lowest, point.highest) == (
-        pytest.approx(-0.99e-3, rel=5e-3),
-        pytest.approx(-0.81e-3, rel=5e-3),
-    )
+    assert point == pytest.approx((0.6, -0.9e-3, -0.99e-3, -0.81e-3), rel=5e-3)
 
 
 def test_mean_is_over_the_way_not_over_the_outputs():
     even = history(0.6)
     first_half = (even.stroke_distance.values < 22e-3) | (np.arange(even.sizes["time"]) % 4 == 0)
     uneven = even.isel(time=np.flatnonzero(first_half))
-    assert uneven.centre_lateral_displacement.values[
-        uneven.stroke_distance.values > 8e-3
-    ].mean() != pytest.approx(-0.9e-3, rel=0.02)
+    over_waves = uneven.centre_lateral_displacement[uneven.stroke_distance.values > 8e-3]
+    assert float(over_waves.mean()) != pytest.approx(-0.9e-3, rel=0.02)
     assert stretch(uneven).mean == pytest.approx(stretch(even).mean, rel=5e-3)
 
 
@@ -104,55 +88,46 @@ def test_mean_is_over_the_way_not_over_the_outputs():
     "slope, exponent", [(1.5e-3, 1.0), (2.2e-3, 1.0), (1.4e-3, 0.7), (1.4e-3, 1.3)]
 )
 def test_a_known_law_is_given_back(slope, exponent):
-    found = study(lambda mu: slope * mu**exponent)
+    found = study(lambda mu: slope * mu**exponent)["friction"]
 
     def exact(lateral):
         return (lateral / slope) ** (1 / exponent)
 
     best = exact(1e-3)
-    assert estimate(found, "coefficient") == pytest.approx(best, rel=5e-3)
-    assert estimate(found, "coefficient, rounded") == pytest.approx(0.05 * round(best / 0.05))
-    assert estimate(found, "least coefficient for about 1 mm") == pytest.approx(
-        exact(0.85e-3), rel=5e-3
-    )
-    assert estimate(found, "most coefficient for about 1 mm") == pytest.approx(
-        exact(1.15e-3), rel=5e-3
-    )
-    assert estimate(found, "least coefficient within the axis of Fig 5-15") == pytest.approx(
-        exact(0.5e-3 / 0.9), rel=8e-3
-    )
-    assert estimate(found, "most coefficient within the axis of Fig 5-15") == pytest.approx(
-        exact(1.25e-3 / 1.1), rel=8e-3
-    )
+    for quantity, expected in {
+        "coefficient": best,
+        "least coefficient for about 1 mm": exact(0.85e-3),
+        "most coefficient for about 1 mm": exact(1.15e-3),
+        "lowest displacement over the waves": -1.1,
+    }.items():
+        assert found[quantity] == pytest.approx(expected, rel=5e-3), quantity
+    assert found["coefficient, rounded"] == pytest.approx(0.05 * round(best / 0.05))
+    axis = "{} coefficient within the axis of Fig 5-15"
+    assert found[axis.format("least")] == pytest.approx(exact(0.5e-3 / 0.9), rel=8e-3)
+    assert found[axis.format("most")] == pytest.approx(exact(1.25e-3 / 1.1), rel=8e-3)
     slope_here = 1e3 * slope * exponent * best ** (exponent - 1)
-    assert estimate(found, "stretch per coefficient") == pytest.approx(slope_here, rel=0.02)
-    assert estimate(found, "lowest displacement over the waves") == pytest.approx(-1.1, rel=5e-3)
+    assert found["stretch per coefficient"] == pytest.approx(slope_here, rel=0.02)
 
 
 def test_target_is_the_thesis_s_number():
     other = NUMBERS.assign(low=[0.8, -1.25])
-    assert estimate(study(numbers=other), "coefficient") == pytest.approx(0.8 / 1.5, rel=5e-3)
+    assert study(numbers=other)["friction", "coefficient"] == pytest.approx(0.8 / 1.5, rel=5e-3)
     committed = pd.read_csv(REFERENCE / "thesis_numbers.csv").set_index("id")
-    assert committed.loc[STRETCH, "low"] == 1 and committed.loc[STRETCH, "units"] == "mm"
-    assert (
-        committed.loc[AXIS, ["low", "high"]].tolist() == [-1.25, -0.5]
-        and committed.loc[AXIS, "units"] == "mm"
-    )
+    columns = ["low", "high", "units"]
+    assert committed.loc[STRETCH, columns].tolist() == [1, pytest.approx(np.nan, nan_ok=True), "mm"]
+    assert committed.loc[AXIS, columns].tolist() == [-1.25, -0.5, "mm"]
 
 
 def test_variations_scale_the_coefficient():
-    soft = history(0.64, lambda mu: 2 * 1.5e-3 * mu)
+    soft = history(0.64, lambda mu: 2 * linear(mu))
     found = study(histories={"calibration_stroke_softer": soft})
-    title = f"friction: {VARIATIONS['calibration_stroke_softer']}"
-    assert estimate(found, "mean stretch", title) == pytest.approx(2 * 1.5 * 0.64, rel=5e-3)
-    assert estimate(found, "coefficient for 1 mm", title) == pytest.approx(1 / 3, rel=5e-3)
-    assert "change of the stretch by mesh and steps of the thesis's size" not in set(
-        found[1]["quantity"]
-    )
-    both = study(histories={STROKE: history(0.64, lambda mu: 1.5e-3 * mu * 1.01)})
-    assert estimate(
-        both, "change of the stretch by mesh and steps of the thesis's size"
-    ) == pytest.approx(1.0, rel=1e-6)
+    softer = found[f"friction: {VARIATIONS['calibration_stroke_softer']}"]
+    assert softer["mean stretch"] == pytest.approx(2 * 1.5 * 0.64, rel=5e-3)
+    assert softer["coefficient for 1 mm"] == pytest.approx(1 / 3, rel=5e-3)
+    name = "change of the stretch by mesh and steps of the thesis's size"
+    assert name not in found["friction"]
+    fine = history(0.64, lambda mu: 1.01 * linear(mu))
+    assert study(histories={STROKE: fine})["friction", name] == pytest.approx(1.0, rel=1e-6)
 
 
 def test_what_cannot_be_answered_is_refused():
@@ -167,7 +142,7 @@ def test_what_cannot_be_answered_is_refused():
     with pytest.raises(ValueError, match="at least two different"):
         StretchCurve([stretch(history(0.6)), stretch(history(0.6))])
     with pytest.raises(ValueError, match="does not fall"):
-        study(lambda mu: 1.5e-3 * abs(mu - 0.4))
+        study(lambda mu: linear(abs(mu - 0.4)))
     with pytest.raises(ValueError, match=r"-1 mm is beyond the strokes, -0.1\d* to -0.5\d* mm"):
         study(lambda mu: 0.5e-3 * mu)
 
@@ -175,31 +150,20 @@ def test_what_cannot_be_answered_is_refused():
 def test_every_stroke_has_the_calibrated_coefficient():
     table = pd.read_csv(ROOT / "figures" / "tables" / "calibration.csv")
     rows = table[table["study"] == "friction"].set_index("quantity")["estimate"]
-    assert rows["coefficient, rounded"] == pytest.approx(rounded(rows["coefficient"]), abs=1e-9)
-    files = sorted((ROOT / "config" / "scenes").glob("*stroke*.yaml"))
-    names = [name for path in files for name in read_family(path)]
-    assert {
-        "stroke_1",
-        "stroke_5",
-        "stroke_10",
-        "stroke_20",
-        "stroke_40",
-        "stroke_sub_1",
-        "stroke_sub_10",
-        "stroke_sub_40",
-    } < set(names)
+    chosen = rows["coefficient, rounded"]
+    assert chosen == pytest.approx(rounded(rows["coefficient"]), abs=1e-9)
+    names = [name for path in SCENES.glob("*stroke*.yaml") for name in read_family(path)]
+    strokes = {f"stroke_{speed}" for speed in (1, 5, 10, 20, 40)}
+    assert strokes | {f"stroke_sub_{speed}" for speed in (1, 10, 40)} < set(names)
     for name in names:
-        path = ROOT / "config" / "scenes" / f"{name}.yaml"
-        assert load_scene(path).friction == pytest.approx(rows["coefficient, rounded"], abs=1e-9), (
-            name
-        )
+        assert load_scene(SCENES / f"{name}.yaml").friction == pytest.approx(chosen, abs=1e-9), name
     for family in ("stroke", "stroke_sub"):
-        text = (ROOT / "config" / "scenes" / f"{family}.yaml").read_text()
+        text = (SCENES / f"{family}.yaml").read_text()
         assert "figures/tables/calibration.md; the thesis states none" in text
 
 
 def test_a_range_upside_down_is_refused(tmp_path):
-    text = (REFERENCE / "friction.csv").read_text().replace("0.87,1.05", "1.05,0.87")
+    text = PUBLISHED.read_text().replace("0.87,1.05", "1.05,0.87")
     (tmp_path / "friction.csv").write_text(text)
     with pytest.raises(
         ReferenceDataError,

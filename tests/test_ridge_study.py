@@ -2,6 +2,7 @@
 cases, frames and rows.
 """
 
+import itertools
 import json
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from cysyk1999.claims.comparison import TRENDS
 from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
 from cysyk1999.measures.table import Measures
 from cysyk1999.studies.ridges import frames as ridge_frames
-from cysyk1999.studies.ridges import picture as ridge_study
+from cysyk1999.studies.ridges import picture
 from cysyk1999.studies.ridges.run import (
     AS_DRAWN,
     FLANK,
@@ -67,31 +68,20 @@ depends on the processor.
 
 def test_strokes_to_either_side_are_mirror_images(base):
     """The identity that lets one stroke stand for two, simulated once on a draft mesh."""
-    draft = base.with_accuracy("draft")
-    offsets = (-120e-6, -BESIDE, 0.0, BESIDE, 120e-6)
-    outputs = draft.outputs.model_copy(
-        update={"receptors": Receptors(depths=(600e-6, DEPTH, 935e-6), offsets=offsets)}
+    depths, offsets = (600e-6, DEPTH, 935e-6), (-120e-6, -BESIDE, 0.0, BESIDE, 120e-6)
+    draft = base.with_accuracy("draft").varied(
+        {"outputs.receptors": Receptors(depths=depths, offsets=offsets)}
     )
     right, left = (
-        simulate(
-            draft.model_copy(
-                update={
-                    "motion": (draft.motion[0], Slide(slide=x, speed=10e-3)),
-                    "outputs": outputs,
-                }
-            )
-        )
+        simulate(draft.varied({"motion": (draft.motion[0], Slide(slide=x, speed=10e-3))}))
         for x in (-3e-3, 3e-3)
     )
-    for depth in (600e-6, DEPTH, 935e-6):
-        for x in offsets:
-            np.testing.assert_allclose(
-                energy(right, depth, x), energy(left, depth, -x), rtol=LEFT_OUT
-            )
+    for depth, x in itertools.product(depths, offsets):
+        mirrored = energy(left, depth, -x)
+        np.testing.assert_allclose(energy(right, depth, x), mirrored, rtol=LEFT_OUT)
     found, mirrored = both_ways(right, DEPTH, -BESIDE)
-    np.testing.assert_allclose(
-        mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=LEFT_OUT
-    )
+    other = energy(left, DEPTH, -BESIDE)[-len(mirrored) :]
+    np.testing.assert_allclose(mirrored, other, rtol=LEFT_OUT)
     assert directional_index(right, DEPTH, -BESIDE) > 0.3 and (found > 1.5 * mirrored).all()
 
 
@@ -104,19 +94,26 @@ def test_islands_are_counted(made):
         assert islands(history)[0] == count
 
 
+def bends(mesh, corners=None):
+    """Nodes (n, 2) where the epidermis ends near the apex; only corners, if so many are given."""
+    layers = [mesh.region == mesh.regions.index(name) for name in ("epidermis", "dermis")]
+    nodes = np.intersect1d(*(mesh.cells[layer, :corners] for layer in layers))
+    points = mesh.points[nodes]
+    return points[(np.abs(points[:, 0]) < 0.3e-3) & (points[:, 1] > 0)]
+
+
+def check_boundary(ridges, points, error):
+    """Whether points lie at the depth that `boundary` says."""
+    curve = RidgedPad(OUTLINE, ridges).curve
+    assert len(points)
+    for x, height in points:
+        depth = boundary(OUTLINE, ridges, x)
+        theta = curve.theta_at(x / (1 - depth / OUTLINE.apex_radius))
+        assert curve.point(theta, depth)[0, 1] == pytest.approx(height, abs=error)
+
+
 def test_boundary_is_where_the_mesh_has_it(base):
-    mesh = mesh_for(base, plan(base))
-    layers = [
-        np.unique(mesh.cells[mesh.region == mesh.regions.index(name)])
-        for name in ("epidermis", "dermis")
-    ]
-    x, y = mesh.points[np.intersect1d(*layers)].T
-    near = np.flatnonzero((np.abs(x) < 0.3e-3) & (y > 0))
-    pad = RidgedPad(OUTLINE, base.specimen.ridges)
-    for at, height in zip(x[near], y[near], strict=True):
-        depth = boundary(OUTLINE, base.specimen.ridges, at)
-        theta = pad.curve.theta_at(at / (1 - depth / OUTLINE.apex_radius))
-        assert pad.curve.point(theta, depth)[0, 1] == pytest.approx(height, abs=0.5e-6)
+    check_boundary(base.specimen.ridges, bends(mesh_for(base, plan(base))), 0.5e-6)
     assert boundary(OUTLINE, None, 0.1e-3) == OUTLINE.epidermis_thickness
 
 
@@ -141,27 +138,14 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
     along it.
     """
     asked = case_scene(base, Case(*KEY, name))
-    chosen = plan(asked)
+    chosen, ridges = plan(asked), asked.specimen.ridges
     plain = mesh_for(asked, chosen)
-    straight = AS_DRAWN[name][0]
-    drawn = ridges_drawn(plain, asked.specimen.outline, asked.specimen.ridges, straight)
+    drawn = ridges_drawn(plain, asked.specimen.outline, ridges, AS_DRAWN[name][0])
     assert not chosen.effects["ridges"].on and len(drawn.points) == len(plain.points)
     assert quality_of(drawn)["worst_scaled_jacobian"] > 0.3
-    np.testing.assert_array_equal(
-        drawn.points[np.unique(drawn.curves["skin"])], plain.points[np.unique(plain.curves["skin"])]
-    )
-    corners = [
-        np.unique(drawn.cells[drawn.region == drawn.regions.index(n), :4])
-        for n in ("epidermis", "dermis")
-    ]
-    x, y = drawn.points[np.intersect1d(*corners)].T
-    pad = RidgedPad(OUTLINE, asked.specimen.ridges)
-    for at, height in zip(x, y, strict=True):
-        if abs(at) < 0.4e-3 and height > 0:
-            depth = boundary(OUTLINE, asked.specimen.ridges, at)
-            assert pad.curve.point(
-                pad.curve.theta_at(at / (1 - depth / OUTLINE.apex_radius)), depth
-            )[0, 1] == pytest.approx(height, abs=1e-6)
+    skin = np.unique(plain.curves["skin"])
+    np.testing.assert_array_equal(drawn.points[skin], plain.points[skin])
+    check_boundary(ridges, bends(drawn, corners=4), 1e-6)
     moved = np.hypot(*(drawn.points - plain.points).T)
     assert 50e-6 < moved.max() < 80e-6
 
@@ -171,21 +155,16 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
 
 def test_frames_are_drawn_from_themselves(made):
     """Made-up cases of every kind: each frame has its curves, and each picture is drawn."""
-    stroke = made["ridged_stroke_right"]
+    stroke = made["ridged_stroke_right"].assign_attrs(cost=json.dumps({"nodes": 10}))
     scene = json.loads(stroke.attrs["scene"])
+    depths, offsets = {*GRID[0], DEPTH}, sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
     cases = {}
-    for height in (0, 150, 300):
-        for mesh in ("thesis", "coarse", "fine", *AS_DRAWN):
-            inner = {**synthetic.RIDGES["inner"], "height": height * 1e-6}
-            ridges = "none" if not height else synthetic.RIDGES | {"inner": inner}
-            own = scene | {"specimen": scene["specimen"] | {"ridges": ridges}}
-            cases[f"{height}_0.35_{mesh}"] = stroke.assign_attrs(
-                scene=json.dumps(own), cost=json.dumps({"nodes": 10})
-            )
-    depths = {*GRID[0], DEPTH}
-    for history in cases.values():
+    for height, mesh in itertools.product((0, 150, 300), ("thesis", "coarse", "fine", *AS_DRAWN)):
+        inner = {**synthetic.RIDGES["inner"], "height": height * 1e-6}
+        ridges = "none" if not height else synthetic.RIDGES | {"inner": inner}
+        own = scene | {"specimen": scene["specimen"] | {"ridges": ridges}}
+        history = cases[f"{height}_0.35_{mesh}"] = stroke.assign_attrs(scene=json.dumps(own))
         depths |= {depth for depth, _ in ridge_frames.places(history).values()}
-    offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
 
     def felt(z, x):
         return 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
@@ -193,38 +172,33 @@ def test_frames_are_drawn_from_themselves(made):
     for name, history in cases.items():
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
     assert scene_of(cases["0_0.35_thesis"]).specimen.ridges is None
-    frames = ridge_frames.frames(cases, made, {})
-    assert set(frames) == set(ridge_study.STUDIES)
-    profile = frames["offset"][
-        frames["offset"]["series"].eq("inner ridges") & frames["offset"]["panel"].eq("profile")
-    ]
-    beside = profile.set_index(ridge_study.OFFSET).loc[-46.0, ridge_study.INDEX]
+    frames = {name: make(cases) for name, make in ridge_frames.FRAMES.items()}
+    profile = frames["offset"].query("series == 'inner ridges' and panel == 'profile'")
+    beside = profile.set_index(picture.OFFSET).loc[-46.0, picture.INDEX]
     assert beside == pytest.approx(0.5)
-    assert set(frames["height"][ridge_study.HEIGHT]) == {0, 150, 300}
-    thesis = frames["height"][frames["height"]["series"].str.startswith("thesis")].set_index(
-        ridge_study.HEIGHT
-    )["layer"]
-    assert thesis.to_dict() == {0: "dermis", 150: "dermis", 300: "epidermis"}
-    assert list(frames["mesh"]["series"]) == [
-        "coarse",
-        "thesis",
-        "fine",
-        "curved",
-        "straight",
-        "shifted",
-    ]
-    for name, draw in ridge_study.STUDIES.items():
+    thesis = frames["height"][frames["height"]["series"].str.startswith("thesis")]
+    layers = thesis.set_index(picture.HEIGHT)["layer"].to_dict()
+    assert layers == {0: "dermis", 150: "dermis", 300: "epidermis"}
+    meshes = ["coarse", "thesis", "fine", "curved", "straight", "shifted"]
+    assert list(frames["mesh"]["series"]) == meshes and set(frames) == set(picture.STUDIES)
+    for name, draw in picture.STUDIES.items():
         draw(frames[name])
 
 
 def test_rows_hold_for_what_was_made_up_to_show_them(made):
     m = Measures.of(made)
-    for id_ in ("T321", "TR43", "TR44", "TR45", "TR46", "TR47", "TR48", "TR49", "TR50", "TR51"):
+    for id_ in ("T321", *(f"TR{number}" for number in range(43, 52))):
         assert TRENDS[id_](m).holds, id_
-    assert (
-        m("highest_of_three", "ridged_stroke_right") == pytest.approx(300)
-        and m("held_force", "ridged_stroke_right") == 20
-    )
+    assert m("highest_of_three", "ridged_stroke_right") == pytest.approx(300)
+    assert m("held_force", "ridged_stroke_right") == 20
+
+
+def _times(factor):
+    return lambda h: h.assign(strain_energy_density=factor * h.strain_energy_density)
+
+
+def _stroke_of(name):
+    return lambda h: synthetic.plate_stroke(name)
 
 
 def _backwards(history):
@@ -235,29 +209,13 @@ def _backwards(history):
 @pytest.mark.parametrize(
     ("id_", "scene", "mutant"),
     [
-        (
-            "TR45",
-            "ridged_40_k1260",
-            lambda h: h.assign(strain_energy_density=0.5 * h.strain_energy_density),
-        ),
-        (
-            "TR44",
-            "ridged_40_k79",
-            lambda h: h.assign(strain_energy_density=9 * h.strain_energy_density),
-        ),
+        ("TR45", "ridged_40_k1260", _times(0.5)),
+        ("TR44", "ridged_40_k79", _times(9)),
         ("TR43", "ridged_40_k210", _backwards),
-        ("TR47", "plate_stroke_right", lambda h: synthetic.plate_stroke("ridged_stroke_right")),
-        ("T321", "ridged_stroke_right", lambda h: synthetic.plate_stroke("plate_stroke_right")),
-        (
-            "TR49",
-            "ridged_stroke_left",
-            lambda h: h.assign(strain_energy_density=3 * h.strain_energy_density),
-        ),
-        (
-            "TR50",
-            "ridged_outer_stroke_right",
-            lambda h: synthetic.plate_stroke("plate_stroke_right"),
-        ),
+        ("TR47", "plate_stroke_right", _stroke_of("ridged_stroke_right")),
+        ("T321", "ridged_stroke_right", _stroke_of("plate_stroke_right")),
+        ("TR49", "ridged_stroke_left", _times(3)),
+        ("TR50", "ridged_outer_stroke_right", _stroke_of("plate_stroke_right")),
         ("TR51", "ridged_outer_stroke_right", lambda h: h.assign(cutbacks=h.cutbacks + 1)),
     ],
 )

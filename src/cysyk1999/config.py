@@ -129,7 +129,7 @@ class WorkflowConfig(Strict):
     left out, no study of ridges.
     """
     ridge_frictions: _list(Height) = ()
-    """Coefficients of friction over which ridged_stroke_right is varied."""
+    """No longer used: the study of ridges varies height and mesh only."""
     accuracy: Accuracy = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each
     states.

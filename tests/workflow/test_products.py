@@ -23,8 +23,8 @@ from fingerpad.planning.plan import companion
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).resolve().parents[2]
-STUDY_FIGURES = ("fit", "identifiability", "residuals", "friction")
-RIDGES = ("offset", "height", "friction", "mesh", "outer")
+STUDY_FIGURES = ("fit", "identifiability", "friction")
+RIDGES = ("offset", "height", "mesh")
 
 
 class Plan:
@@ -201,7 +201,7 @@ def test_a_figure_simulates_the_families_it_needs_only(thesis):
 
 def test_ridges_and_calibration_simulate_their_own_scenes_only(thesis):
     names = thesis.needed(thesis.project.targets("ridges"))
-    assert all(scene.startswith("ridged_outer_stroke_") for scene in thesis.scenes(names))
+    assert not thesis.scenes(names)
     names = thesis.needed(thesis.project.targets("calibration"))
     steady = {*thesis.config.calibration_scenes} - {"calibration_ramp_hold"}
     assert thesis.scenes(names) == {*steady, *thesis.config.friction_scenes}

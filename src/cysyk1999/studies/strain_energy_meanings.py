@@ -44,7 +44,8 @@ MEANINGS = {
     "long-term network": "strain_energy_network",
 }
 """Definition -> variable of a history."""
-DEPTHS = {"600 um": 600e-6, "915 um": 915e-6}
+DEPTHS = {"600 um": (600e-6, "--"), "915 um": (915e-6, "-")}
+"""Depths of receptors, m, and their lines."""
 SHOWN = "915 um"
 CHANGE = "change_in_hold (%)"
 MARKS = {
@@ -52,11 +53,8 @@ MARKS = {
     | {"ms": 3.5, "lw": 1.0, "zorder": 9 - k}
     for k, panel in enumerate(MEANINGS)
 }
-MARKS["long-term moduli"] |= {
-    "ms": 7,
-    "mfc": "none",
-}  # around others: at 600 um it changes as the first does
-LINES = {"600 um": "--", "915 um": "-"}
+MARKS["long-term moduli"] |= {"ms": 7, "mfc": "none"}
+"""Looks; one is round others, for at 600 um it changes as the first does."""
 FALLS = {"fc": "white", "ec": "0.88", "hatch": "\\\\\\", "lw": 0, "zorder": 0}
 
 
@@ -66,21 +64,21 @@ def frame_meanings(histories: Histories, coarse: Companions) -> pd.DataFrame:
     """
     parts = []
     for label, history in NINE.histories(histories).items():
+        companion, top = coarse.get(scene_name("ramp40", label)), ramp_end(history)
         for panel, variable in MEANINGS.items():
-            for series, depth in DEPTHS.items():
+            for series, (depth, _) in DEPTHS.items():
                 read = partial(energy, depth=depth, name=variable)
-                values, top = read(history), ramp_end(history)
+                values = read(history)
                 rows = {
                     "source": SIMULATED,
                     "panel": panel,
                     "series": series,
                     "surface": label,
                     TIME: history["time"].values,
+                    SED: values,
+                    CHANGE: 100 * (values / values[top] - 1),
                 }
-                rows |= {SED: values, CHANGE: 100 * (values / values[top] - 1)}
-                errors = curve_errors(
-                    history, coarse.get(scene_name("ramp40", label)), over_time(read)
-                )
+                errors = curve_errors(history, companion, over_time(read))
                 parts.append(pd.DataFrame(rows | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
@@ -95,58 +93,46 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the
     hold for every surface.
     """
-    note = [
-        f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} "
-        "Recorded rates fall in the "
-        "hold under every surface (Cysyk 1999, section 4.2). Hatched: where a definition "
-        "does so. Without viscosity the five "
-        "are one.",
-    ]
+    errors = axs.footnote(frame)[0].replace("; strain energy on instantaneous moduli", "")
+    note = (
+        f"{errors} Recorded rates fall in the hold under every surface (Cysyk 1999, section 4.2). "
+        "Hatched: where a definition does so. Without viscosity the five are one."
+    )
     title = (
         "Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, "
         "under the centre"
     )
-    fig = style.study_figure(title, note, 5.4)
+    fig = style.study_figure(title, [note], 5.4)
     grid = fig.add_gridspec(2, len(MEANINGS), height_ratios=[1, 1.1])
     axes = [fig.add_subplot(grid[0, k]) for k in range(len(MEANINGS))]
     shown = frame[frame["series"] == SHOWN]
+    curves = dict(list(shown.groupby(["panel", "surface"])))
     ends = {}
     for ax, panel in zip(axes, MEANINGS, strict=True):
         for label in SURFACES:
-            rows = shown[(shown["panel"] == panel) & (shown["surface"] == label)]
-            ax.plot(rows[TIME], 1 + rows[CHANGE] / 100, **axs.look(label))
-            ends[label] = (rows[TIME].iloc[-1], 1 + rows[CHANGE].iloc[-1] / 100)
+            rows = curves[panel, label]
+            time, share = rows[TIME].to_numpy(), 1 + rows[CHANGE].to_numpy() / 100
+            ax.plot(time, share, **axs.look(label))
+            ends[label] = time[-1], share[-1]
         ax.axhspan(0, 1, **FALLS)
-        ax.set(
-            title=titled(panel),
-            xlabel="time (s)",
-            xlim=(0, 2.5),
-            ylim=(0, 1.08 * (1 + shown[CHANGE].max() / 100)),
-        )
+        ax.set(title=titled(panel), xlabel="time (s)", xlim=(0, 2.5))
+        ax.set_ylim(0, 1.08 * (1 + shown[CHANGE].max() / 100))
         ax.tick_params(labelleft=ax is axes[0])
     axes[0].set_ylabel(f"energy over that at the top\nof the ramp, {SHOWN.replace('um', 'µm')}")
     style.label_ends(axes[-1], ends, 2.62, "curvature (1/m)")
     ax = fig.add_subplot(grid[1, :])
-    last = frame.groupby(["panel", "series", "surface"], sort=False).last().reset_index()
-    for panel in MEANINGS:
-        for series, line in LINES.items():
-            rows = last[(last["panel"] == panel) & (last["series"] == series)]
-            place = [SURFACES.index(label) for label in rows["surface"]]
-            ax.plot(place, rows[CHANGE], line, **MARKS[panel])
+    last = frame.groupby(["panel", "series", "surface"])[CHANGE].last()
+    handles = [style.handle(panel, **MARKS[panel]) for panel in MEANINGS]
+    for series, (_, line) in DEPTHS.items():
+        for panel in MEANINGS:
+            ax.plot(last[panel][series].reindex(SURFACES).to_numpy(), line, **MARKS[panel])
+        handles.append(style.handle(series.replace("um", "µm"), color=style.INK, ls=line))
     ax.axhline(0, color=style.INK, lw=0.7)
-    ax.axhspan(min(0.0, 1.2 * last[CHANGE].min()), 0, **FALLS)
-    ax.set(
-        ylabel="change over the hold (%)",
-        xlabel="curvature (1/m)",
-        xlim=(-0.3, len(SURFACES) - 0.7),
-    )
+    ax.axhspan(min(0.0, 1.2 * last.min()), 0, **FALLS)
+    ax.set(ylabel="change over the hold (%)", xlabel="curvature (1/m)")
+    ax.set_xlim(-0.3, len(SURFACES) - 0.7)
     ax.set_xticks(range(len(SURFACES)), ["flat plate", *SURFACES[1:]])
     ax.set_ylim(top=ax.get_ylim()[0] + 1.3 * np.ptp(ax.get_ylim()))
-    handles = [style.handle(panel, **MARKS[panel]) for panel in MEANINGS]
-    handles += [
-        style.handle(series.replace("um", "µm"), color=style.INK, ls=line)
-        for series, line in LINES.items()
-    ]
     ax.legend(handles=handles, loc="upper left", ncols=3)
     return fig
 

@@ -10,6 +10,7 @@ it. Stretch tells friction force over stiffness, so the coefficient is as good a
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -23,8 +24,10 @@ from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import DISTANCE, LATERAL
 from cysyk1999.publishing.write import without_round_off, write_frame
 from cysyk1999.reference_data import read_friction
-from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS
-from fingerpad.results import scene_of
+from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS, estimate
+from fingerpad import load_scene, plan
+from fingerpad.results import scene_of, write_history
+from fingerpad.simulation import simulate
 
 STROKE = "stroke_sub_10"
 STRETCH, AXIS = "T232", "T266"
@@ -46,6 +49,8 @@ VARIATIONS = {
     "calibration_stroke_softer": "moduli fitted to measured forces",
 }
 """Scene -> what it changes in the strokes of the curve."""
+row = partial(estimate, "friction", "thesis")
+"""A row of the estimates of the curve: quantity, value, unit, note."""
 
 
 class Stretch(NamedTuple):
@@ -68,20 +73,24 @@ def stretch(history: xr.Dataset) -> Stretch:
         The stroke ends before the last wave does, or is not over a wavy surface.
     """
     scene = scene_of(history)
-    surface = scene.stimulus
-    if surface.shape != "wavy":
+    if scene.stimulus.shape != "wavy":
         raise ValueError(f"{scene.name} does not stroke a wavy surface")
-    start, end = surface.lead_in, surface.length - surface.run_out
+    start, end = waves(history)
     way, first = np.unique(history.stroke_distance.values, return_index=True)
-    lateral = history.centre_lateral_displacement.values[first]
     if way[-1] < end * (1 - 1e-9):
         raise ValueError(
             f"{scene.name} strokes {way[-1] * 1e3:.4g} mm, the waves end at {end * 1e3:.4g} mm"
         )
     x = np.concatenate([[start], way[(way > start) & (way < end)], [end]])
-    u = np.interp(x, way, lateral)
+    u = np.interp(x, way, history.centre_lateral_displacement.values[first])
     mean = float(np.trapezoid(u, x) / (end - start))
     return Stretch(scene.friction, mean, float(u.min()), float(u.max()))
+
+
+def waves(history: xr.Dataset) -> tuple[float, float]:
+    """Where the waves of a stroked surface begin and end, m along it."""
+    surface = scene_of(history).stimulus
+    return surface.lead_in, surface.length - surface.run_out
 
 
 class StretchCurve:
@@ -99,22 +108,21 @@ class StretchCurve:
         There are fewer, or the skin is not dragged further by every larger coefficient.
     """
 
-    def __init__(self, points: Iterable[Stretch]):
+    def __init__(self, points: Iterable[Stretch]) -> None:
         self.points = sorted(points)
-        coefficient = [point.coefficient for point in self.points]
-        if len(set(coefficient)) < max(2, len(coefficient)):
+        coefficients, *curves = map(np.array, zip(*self.points, strict=True))
+        if len(set(coefficients)) < max(2, len(coefficients)):
             raise ValueError(
                 "a curve needs at least two different coefficients of friction, each once"
             )
-        self.of: dict[str, PchipInterpolator] = {}
-        for name in ("mean", "lowest", "highest"):
-            values = [getattr(point, name) for point in self.points]
-            if not (np.diff(values) < 0).all():
+        self.of = {}
+        for name, lateral in zip(Stretch._fields[1:], curves, strict=True):
+            if not (np.diff(lateral) < 0).all():
                 raise ValueError(
                     f"the {name} lateral displacement does not fall with every larger coefficient "
                     "of friction"
                 )
-            self.of[name] = PchipInterpolator(coefficient, values)
+            self.of[name] = PchipInterpolator(coefficients, lateral)
 
     def at(self, coefficient: float) -> Stretch:
         """Stretch at a coefficient."""
@@ -129,13 +137,13 @@ class StretchCurve:
         ValueError
             None between the simulated coefficients has it.
         """
-        first, last = (getattr(point, name) for point in (self.points[0], self.points[-1]))
-        if not last <= lateral <= first:
-            raise ValueError(
-                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, "
-                f"{first * 1e3:.3g} to {last * 1e3:.3g} mm"
-            )
-        return float(self.of[name].solve(lateral, extrapolate=False)[0])
+        if found := self.of[name].solve(lateral, extrapolate=False).tolist():
+            return found[0]
+        first, last = (1e3 * getattr(self.points[k], name) for k in (0, -1))
+        raise ValueError(
+            f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, "
+            f"{first:.3g} to {last:.3g} mm"
+        )
 
 
 def calibrate_friction(
@@ -159,57 +167,64 @@ def calibrate_friction(
     """
     stated = numbers.set_index("id")
     target = -1e-3 * stated.loc[STRETCH, "low"]
-    axis = tuple(1e-3 * stated.loc[AXIS, ["low", "high"]].astype(float))
+    axis = Stretch(np.nan, np.nan, *(1e-3 * stated.loc[AXIS, ["low", "high"]].astype(float)))
     sweep = sorted(sweep, key=lambda history: scene_of(history).friction)
     curve = StretchCurve(map(stretch, sweep))
     best = curve.at(curve.coefficient_at(target))._replace(mean=target)
     varied = {
         title: stretch(histories[name]) for name, title in VARIATIONS.items() if name in histories
     }
+    about = Stretch(np.nan, target, target - ABOUT, target + ABOUT)
+    panels = {
+        "stretch": [("strokes", point) for point in curve.points],
+        "estimate": [("calibrated", best)],
+        "variations": [pair for pair in varied.items() if pair[0] != VARIATIONS[STROKE]],
+        "stated": [("about 1 mm, Fig 5-6", about), ("axis of Fig 5-15", axis)],
+    }
+    frame = pd.concat([_courses(sweep), *_points(panels), _measured(published)], ignore_index=True)
     rows = [
         *_best_rows(curve, best, axis),
         *_varied_rows(curve, varied, target),
         *_published_rows(published),
     ]
-    estimates = pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
-    return _frame(sweep, curve, best, varied, axis, published), estimates
+    return frame, pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
 
 
-def _frame(sweep, curve, best, varied, axis, published) -> pd.DataFrame:
+def _courses(sweep: Iterable[xr.Dataset]) -> pd.DataFrame:
+    """Lateral displacement along every stroke, and where the waves begin and end."""
     parts = []
-    for history, point in zip(sweep, curve.points, strict=True):
+    for history in sweep:
+        friction, sliding = scene_of(history).friction, history.leg.values == history.leg.values[-1]
         course = {
             "panel": "course",
-            "series": f"{point.coefficient:g}",
+            "series": f"{friction:g}",
             "source": "simulated",
-            COEFFICIENT: point.coefficient,
+            COEFFICIENT: friction,
             DISTANCE: 1e3 * history.stroke_distance.values,
             LATERAL: 1e3 * history.centre_lateral_displacement.values,
         }
-        sliding = np.flatnonzero(history.leg.values == history.leg.values[-1])
-        parts.append(pd.DataFrame(course).iloc[sliding[0] - 1 :])
-    surface = scene_of(sweep[0]).stimulus
-    ends = [1e3 * surface.lead_in, 1e3 * (surface.length - surface.run_out)]
-    waves = {"panel": "waves", "series": "waves", "source": "simulated", DISTANCE: ends}
-    parts.append(pd.DataFrame(waves))
-    about = Stretch(np.nan, best.mean, best.mean - ABOUT, best.mean + ABOUT)
-    other = {name: point for name, point in varied.items() if name != VARIATIONS[STROKE]}
-    stated = {"about 1 mm, Fig 5-6": about, "axis of Fig 5-15": Stretch(np.nan, np.nan, *axis)}
-    for panel, points in (
-        ("stretch", [("strokes", point) for point in curve.points]),
-        ("estimate", [("calibrated", best)]),
-        ("variations", other.items()),
-        ("stated", stated.items()),
-    ):
-        rows = [(name, point[0], *(1e3 * value for value in point[1:])) for name, point in points]
-        frame = pd.DataFrame(rows, columns=["series", COEFFICIENT, LATERAL, LOWEST, HIGHEST])
-        source = "stated (Cysyk 1999)" if panel == "stated" else "simulated"
-        if rows:
-            parts.append(frame.assign(panel=panel, source=source))
+        parts.append(pd.DataFrame(course).iloc[np.argmax(sliding) - 1 :])
+    ends = [1e3 * end for end in waves(history)]
+    mark = {"panel": "waves", "series": "waves", "source": "simulated", DISTANCE: ends}
+    return pd.concat([*parts, pd.DataFrame(mark)])
+
+
+def _points(panels: Mapping[str, list[tuple[str, Stretch]]]) -> Iterator[pd.DataFrame]:
+    for panel, points in panels.items():
+        if points:
+            names, stretches = zip(*points, strict=True)
+            frame = pd.DataFrame(stretches) * [1, 1e3, 1e3, 1e3]
+            frame.columns = [COEFFICIENT, LATERAL, LOWEST, HIGHEST]
+            source = "stated (Cysyk 1999)" if panel == "stated" else "simulated"
+            yield frame.assign(panel=panel, series=names, source=source)
+
+
+def _measured(published: pd.DataFrame) -> pd.DataFrame:
+    """Published coefficients."""
     chosen = published[published["quantity"] == "coefficient"]
     low, high = chosen["low"], chosen["high"].fillna(chosen["low"])
     cited = chosen["source"].str.replace(r"(\b\d{4}), .*", r"\1", regex=True)
-    measured = {
+    columns = {
         "panel": "published",
         "series": chosen["contact"].where(chosen["kind"] == "measured", chosen["condition"]),
         "source": chosen["kind"] + " (" + cited + ")",
@@ -217,7 +232,7 @@ def _frame(sweep, curve, best, varied, axis, published) -> pd.DataFrame:
         "lowest_coefficient (1)": low,
         "highest_coefficient (1)": high,
     }
-    return pd.concat([*parts, pd.DataFrame(measured)], ignore_index=True)
+    return pd.DataFrame(columns)
 
 
 def rounded(coefficient: float) -> float:
@@ -225,77 +240,81 @@ def rounded(coefficient: float) -> float:
     return round(STEP * round(coefficient / STEP), 9)
 
 
-def _row(study, quantity, value, units="1", note="", subject="thesis") -> dict:
-    """A row of the estimates."""
-    row = {"study": study, "subject": subject, "quantity": quantity, "estimate": value}
-    return row | {"units": units, "note": note}
-
-
-def _best_rows(curve: StretchCurve, best: Stretch, axis) -> Iterator[dict]:
-    target, study = best.mean, "friction"
-    mean, about = f"{-1e3 * target:g} mm", 1e3 * ABOUT
+def _best_rows(curve: StretchCurve, best: Stretch, axis: Stretch) -> Iterator[dict]:
+    target, mean = best.mean, f"{-1e3 * best.mean:g} mm"
     note = f"the thesis states none; mean stretch over the waves at 10 mm/s {mean}"
-    yield _row(study, "coefficient", best.coefficient, note=note)
+    yield row("coefficient", best.coefficient, note=note)
     note = f"to {STEP:g}: that of the scenes; interval: the next two rows"
-    yield _row(study, "coefficient, rounded", rounded(best.coefficient), note=note)
+    yield row("coefficient, rounded", rounded(best.coefficient), note=note)
     for side, shift in (("least", ABOUT), ("most", -ABOUT)):
+        value = curve.coefficient_at(target + shift)
         note = (
             f"mean stretch {-1e3 * (target + shift):.3g} mm; "
-            f"about is read as +-{about:g} mm, not a 95 % interval"
+            f"about is read as +-{1e3 * ABOUT:g} mm, not a 95 % interval"
         )
-        value = curve.coefficient_at(target + shift)
-        yield _row(study, f"{side} coefficient for about {mean}", value, note=note)
-    for side, name, lateral in (("least", "highest", axis[1]), ("most", "lowest", axis[0])):
+        yield row(f"{side} coefficient for about {mean}", value, note=note)
+    for side, name in (("least", "highest"), ("most", "lowest")):
+        end = getattr(axis, name)
         note = (
-            f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, "
+            f"the {name} displacement over the waves reaches {1e3 * end:g} mm, "
             "the end of the axis of Fig 5-15"
         )
-        value = curve.coefficient_at(lateral, name)
-        yield _row(study, f"{side} coefficient within the axis of Fig 5-15", value, note=note)
+        value = curve.coefficient_at(end, name)
+        yield row(f"{side} coefficient within the axis of Fig 5-15", value, note=note)
     note = "at the calibrated coefficient"
-    yield _row(study, "lowest displacement over the waves", 1e3 * best.lowest, "mm", note)
-    yield _row(study, "highest displacement over the waves", 1e3 * best.highest, "mm", note)
+    yield row("lowest displacement over the waves", 1e3 * best.lowest, "mm", note)
+    yield row("highest displacement over the waves", 1e3 * best.highest, "mm", note)
     slope = -1e3 * float(curve.of["mean"](best.coefficient, 1))
     note = "slope of the mean stretch at the calibrated coefficient"
-    yield _row(study, "stretch per coefficient", slope, "mm", note)
+    yield row("stretch per coefficient", slope, "mm", note)
 
 
 def _varied_rows(curve: StretchCurve, varied: dict[str, Stretch], target) -> Iterator[dict]:
     for name, point in varied.items():
-        study, here = f"friction: {name}", curve.at(point.coefficient).mean
+        here, of = (
+            curve.at(point.coefficient).mean,
+            partial(estimate, f"friction: {name}", "thesis"),
+        )
         note = f"with {point.coefficient:g}, at which the curve gives {-1e3 * here:.4g} mm"
-        yield _row(study, "mean stretch", -1e3 * point.mean, "mm", note)
-        yield _row(study, "lowest displacement over the waves", 1e3 * point.lowest, "mm")
-        yield _row(study, "highest displacement over the waves", 1e3 * point.highest, "mm")
+        yield of("mean stretch", -1e3 * point.mean, "mm", note)
+        yield of("lowest displacement over the waves", 1e3 * point.lowest, "mm")
+        yield of("highest displacement over the waves", 1e3 * point.highest, "mm")
         try:
             needed = curve.coefficient_at(target * here / point.mean)
         except ValueError:
             needed = np.nan
         note = "were the whole curve scaled by the ratio of the two stretches"
-        yield _row(study, f"coefficient for {-1e3 * target:g} mm", needed, note=note)
+        yield of(f"coefficient for {-1e3 * target:g} mm", needed, note=note)
     if fine := varied.get(VARIATIONS[STROKE]):
         change = 100 * (fine.mean / curve.at(fine.coefficient).mean - 1)
         name = "change of the stretch by mesh and steps of the thesis's size"
-        yield _row("friction", name, change, "%", "the curve rests on coarser ones")
+        yield row(name, change, "%", "the curve rests on coarser ones")
 
 
 def _published_rows(published: pd.DataFrame) -> Iterator[dict]:
-    for row in published.itertuples():
-        single = np.isnan(row.high)
-        value = f"{row.low:g}" if single else f"{row.low:g} to {row.high:g}"
-        middle = row.low if single else (row.low + row.high) / 2
-        quantity = "coefficient" if row.quantity == "coefficient" else "factor of change"
-        note = f"{row.kind}: {value}; {row.condition}; {row.how_obtained}; {row.source}"
-        yield _row("friction: published", quantity, middle, note=note, subject=row.contact)
+    names = {"coefficient": "coefficient", "factor": "factor of change"}
+    for known in published.itertuples():
+        ends = [end for end in (known.low, known.high) if not np.isnan(end)]
+        value = " to ".join(f"{end:g}" for end in ends)
+        note = f"{known.kind}: {value}; {known.condition}; {known.how_obtained}; {known.source}"
+        quantity, middle = names[known.quantity], np.mean(ends)
+        yield estimate("friction: published", known.contact, quantity, middle, note=note)
 
 
 def calibrate_friction_job(job: SimpleNamespace) -> None:
     """Job: `sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction,
     friction_estimates.
     """
-    histories, sweep = read_results(job.histories)[0], read_results(job.sweep)[0].values()
-    result = calibrate_friction(
-        sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])
-    )
+    histories, sweep = (read_results(paths)[0] for paths in (job.histories, job.sweep))
+    tables = pd.read_csv(job.thesis[0]), read_friction(job.published[0])
+    result = calibrate_friction(sweep.values(), histories, *tables)
     for path, frame in zip(job.data, result, strict=True):
         write_frame(without_round_off(frame), Path(path))
+
+
+def strokes_with_friction(job: SimpleNamespace) -> None:
+    """Job: `scene`, `coefficients` -> `histories`, one for each coefficient."""
+    stroke = load_scene(job.scene[0]).with_accuracy("draft")
+    for coefficient, history in zip(job.coefficients, job.histories, strict=True):
+        scene = stroke.varied({"friction": float(coefficient)})
+        write_history(simulate(scene, plan(scene)), history)

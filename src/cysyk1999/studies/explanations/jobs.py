@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from cysyk1999.job import Job, part
 from cysyk1999.project import Project
 from cysyk1999.studies.explanations.run import (
+    FILE,
     PRESSED,
     READ_ONLY,
     READINGS,
@@ -24,25 +25,25 @@ def explanations(project: Project) -> Iterator[Job]:
     """Which reading of what the thesis leaves open brings about what does not hold here: a table;
     25 minutes of one core.
     """
-    scenes, names = [*PRESSED, *STROKED], [*READ_ONLY, *(n for n in READINGS if n not in READ_ONLY)]
-    words = {name: re.sub("[^a-z]+", "_", name) for name in names}
+    scenes, simulated = [*PRESSED, *STROKED], [name for name in READINGS if name not in READ_ONLY]
+    words = {name: re.sub("[^a-z]+", "_", name) for name in (*READ_ONLY, *simulated)}
     data = {name: project.result(f"explanations/{word}.csv") for name, word in words.items()}
-    reference = {"reference": [project.at("config/reference/thesis_numbers.csv")]}
-    read = reference | {"histories": project.histories(project.measured)}
+    known = {
+        "reference": [project.at("config/reference/thesis_numbers.csv")],
+        "study": [project.at(FILE)],
+    }
+    read = known | {"histories": project.histories(project.measured)}
     made = {"data": [data[name] for name in READ_ONLY]}
     yield Job(explanations_read, read, made, {"names": list(READ_ONLY)}, mem_mb=2000)
-    read = reference | project.reads(*scenes)
-    for name in names[len(READ_ONLY) :]:
-        values = {
-            "name": [name],
-            "scenes": [os.path.dirname(project.scene(scenes[0]))],
-            "written": project.written(*scenes),
-        }
-        made, more = {"data": [data[name]]}, {"mem_mb": 2000, "runtime": 60}
+    folder, written = os.path.dirname(project.scene(scenes[0])), project.written(*scenes)
+    more = {"mem_mb": 2000, "runtime": 60}
+    for name in simulated:
+        values = {"name": [name], "scenes": [folder], "written": written}
+        read, made = known | project.reads(*scenes), {"data": [data[name]]}
         yield Job(explanation, read, made, values, f"explanation_{words[name]}", **more)
-    read = reference | {
+    read = known | {
         "comparison": project.tables(["thesis_comparison"]),
         "readings": [*data.values()],
     }
     made = {"tables": project.tables(["explanations", "explanations_readings"])}
-    yield Job(explanations_table, read, made, {"names": names})
+    yield Job(explanations_table, read, made, {"names": list(data)})

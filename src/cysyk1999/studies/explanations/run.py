@@ -21,6 +21,7 @@ from typing import Any
 
 import pandas as pd
 import xarray as xr
+import yaml
 
 from cysyk1999.claims.comparison import AGREES, score_of, thesis_comparison
 from cysyk1999.measures.inputs import read_results
@@ -28,6 +29,7 @@ from cysyk1999.measures.runs import FAST, NINE
 from cysyk1999.measures.table import Instead, Measures
 from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.reference_data import read_reference
+from cysyk1999.studies.common.documents import CONFIG
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
 from fingerpad.results import ENERGIES
 from fingerpad.scenes.scene import Scene, Slide, load_scene
@@ -79,10 +81,6 @@ class Reading:
             ]
         return scene.varied(changes)
 
-    def runs(self) -> Reading:
-        """What of it is simulated."""
-        return replace(self, words="", energy=ENERGIES[0])
-
     def called(self, history: xr.Dataset) -> xr.Dataset:
         """A history of it with receptors and energy by the names that the measures ask for."""
         return history.assign(
@@ -94,72 +92,16 @@ class Reading:
 
 
 CONTROL, PUBLISHED = "as it is", "as published"
-OUTLINE = "specimen.outline"
-STIFFNESS = "specimen.layers.epidermis.youngs_modulus"
-READINGS: dict[str, Reading] = {
-    CONTROL: Reading("the comparison's own scenes"),
-    PUBLISHED: Reading("the comparison's own runs"),
-    "long-term moduli": Reading(
-        "the printed moduli are long-term ones", {"specimen.moduli": "long_term"}
-    ),
-    "larger radius": Reading(
-        "apex radius 10.5 mm, of a published section", {f"{OUTLINE}.apex_radius": "10.5 mm"}
-    ),
-    "smaller radius": Reading(
-        "apex radius 7.9 mm, of the printed fan of nodes",
-        {f"{OUTLINE}.apex_radius": "7.9 mm"},
-        given=("T323",),
-    ),
-    "more fat": Reading(
-        "5.65 mm of fat, the end of its interval",
-        {
-            f"{OUTLINE}.bone_centre_height": "-2.675 mm",
-            f"{OUTLINE}.bone_half_height": "1.325 mm",
-        },
-    ),
-    "wider bone": Reading(
-        "bone half-width 4.87 mm, the end of its interval",
-        {f"{OUTLINE}.bone_half_width": "4.87 mm"},
-    ),
-    "softer epidermis": Reading("half the printed modulus of the epidermis", {STIFFNESS: "75 kPa"}),
-    "stiffer epidermis": Reading(
-        "twice the printed modulus of the epidermis", {STIFFNESS: "300 kPa"}
-    ),
-    "longer contact": Reading(
-        "force spread over 20 mm, not 11.4 mm, of pad", {"specimen.contact_length": "20 mm"}
-    ),
-    "more friction": Reading(
-        "the wavy surface has twice the friction, 0.7, where it is stepped too",
-        stroked={"friction": 0.7},
-    ),
-    "no friction": Reading("the wavy surface slides without friction", stroked={"friction": 0.0}),
-    "half the force": Reading("the wavy surface is pressed with 10 gram-weight", share=0.5),
-    "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", share=2.0),
-    **{
-        f"energy: {name}": Reading(
-            f"strain energy is that of {words}", energy=f"strain_energy_{variable}"
-        )
-        for name, words, variable in (
-            ("long-term", "the total stress on long-term moduli", "long_term_moduli"),
-            ("stress x strain", "half of total stress times strain", "half_stress_strain"),
-            ("recoverable", "the springs of network and branches", "recoverable"),
-            ("network", "the long-term network", "network"),
-        )
-    },
-    "receptors higher": Reading(
-        "receptors lie 80 um nearer the skin than they are called", deeper=-80e-6
-    ),
-    "receptors deeper": Reading("receptors lie 80 um deeper than they are called", deeper=80e-6),
-    "depth kept": Reading(
-        "the depth that 20 gram-weight press to is kept while the wavy surface slides",
-        keeps="depth",
-    ),
+FILE = "config/explanations.yaml"
+READINGS = {
+    name: Reading(**fields)
+    for name, fields in yaml.safe_load((CONFIG / "explanations.yaml").read_text("utf-8")).items()
 }
 """What the thesis leaves open, by name; and the controls."""
 READ_ONLY = tuple(
     name
-    for name, each in READINGS.items()
-    if name != CONTROL and each.runs() == READINGS[CONTROL].runs()
+    for name, reading in READINGS.items()
+    if name != CONTROL and replace(reading, words="", energy=ENERGIES[0]) == Reading("")
 )
 """Readings of the published runs, their control among them; all others are simulated."""
 
@@ -193,16 +135,22 @@ def verdicts(
     return table.loc[table["verdict"] != "not_comparable", ["id", "simulated", "verdict"]]
 
 
-COLUMNS = (
-    "id",
-    "figure",
-    "quantity",
-    "condition",
-    "simulated",
-    "explained_by",
-    "with_it",
-    "not_by",
-)
+def changes(found: Mapping[str, pd.DataFrame]) -> tuple[pd.DataFrame, ...]:
+    """Statements (rows) by readings (columns), the controls left out: whether each holds, whether
+    the reading brings that about, and whether it makes it fail.
+
+    The first is NA where a reading does not tell. A reading does nothing to rows that it was given.
+    """
+    right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
+    right = pd.DataFrame(right).astype("boolean")
+    names = [name for name in found if name not in (CONTROL, PUBLISHED)]
+    holds = right[names]
+    without = right[[control_of(name) for name in names]].set_axis(names, axis=1)
+    gained, lost = (holds & ~without).fillna(False), (~holds & without).fillna(False)
+    for name in names:
+        given = right.index.isin(READINGS[name].given)
+        gained.loc[given, name] = lost.loc[given, name] = False
+    return holds, gained, lost
 
 
 def explanations(
@@ -218,54 +166,39 @@ def explanations(
 
     Returns
     -------
-    A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of
-    them, and the readings that do not. ``attrs["summary"]`` says how many of those held out are
-    right, and how many more are explained, by kind.
+    A row each: the readings that explain it, the number found with the first of them, and the
+    readings that do not. ``attrs["summary"]`` says how many of those held out are right, and how
+    many more are explained, by kind.
     """
     reference = read_reference(reference_csv)
     scored = _held_out(published, reference)
-    right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
-    values = {name: table.set_index("id")["simulated"] for name, table in found.items()}
-    rows = []
-    for _, row in scored[~scored["verdict"].isin(AGREES)].iterrows():
-        id_ = row["id"]
-        tried = {
-            name: bool(held[id_])
-            for name, held in right.items()
-            if name not in (CONTROL, PUBLISHED) and id_ in held
-        }
-        without = {name: right[control_of(name)].get(id_, True) for name in tried}
-        by = [
-            name
-            for name, holds in tried.items()
-            if holds and not without[name] and id_ not in READINGS[name].given
-        ]
-        rows.append(
-            {k: row[k] for k in ("id", "figure", "quantity", "condition", "simulated")}
-            | {"explained_by": ", ".join(by), "with_it": values[by[0]][id_] if by else float("nan")}
-            | {"not_by": ", ".join(name for name in tried if name not in by)}
-        )
-    table = pd.DataFrame(rows, columns=COLUMNS)
+    wrong = scored[~scored["verdict"].isin(AGREES)]
+    table = wrong[["id", "figure", "quantity", "condition", "simulated"]].reset_index(drop=True)
+    holds, gained, _ = (kind.reindex(table["id"]) for kind in changes(found))
+    told = holds.notna()
+    by = [list(gained.columns[row]) for row in (gained & told).to_numpy(bool)]
+    table["explained_by"] = [", ".join(names) for names in by]
+    table["with_it"] = [
+        found[names[0]].set_index("id").at[id_, "simulated"] if names else float("nan")
+        for id_, names in zip(table["id"], by, strict=True)
+    ]
+    rest = (told & ~(gained & told)).to_numpy(bool)
+    table["not_by"] = [", ".join(holds.columns[row]) for row in rest]
     table.attrs["summary"] = _summary(scored, table, reference)
     return table
 
 
 def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame) -> str:
     names = {"axis": "axes", "trend": "trends"}
-    kinds = scored["id"].map(
-        reference["form"].map(lambda form: names.get(form, "values and ranges"))
-    )
+    kinds = scored["id"].map(reference["form"]).map(names).fillna("values and ranges")
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
     agrees = scored["verdict"].isin(AGREES)
-    counts = []
-    for kind in ("values and ranges", "trends", "axes"):
-        of = kinds == kind
-        counts.append(
-            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, "
-            f"{(explained & of).sum()} more explained by a run"
-        )
-    counted = ~kinds.eq("axes")
-    share = ((agrees | explained) & counted).sum() / counted.sum()
+    counts = [
+        f"{kind}: {(agrees & (kinds == kind)).sum()} of {(kinds == kind).sum()} right, "
+        f"{(explained & (kinds == kind)).sum()} more explained by a run"
+        for kind in ("values and ranges", "trends", "axes")
+    ]
+    share = (agrees | explained)[kinds != "axes"].mean()
     return (
         f"**Held out, {'; '.join(counts)}.** Values, ranges and trends right or explained: "
         f"{share:.0%}."
@@ -288,30 +221,11 @@ def turned(
     they make fail.
     """
     held_out = _held_out(published, read_reference(reference_csv))["id"]
-    right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
-    rows = []
-    for name, held in right.items():
-        if name in (CONTROL, PUBLISHED):
-            continue
-        control = right[control_of(name)]
-        both = (
-            held.index.intersection(control.index)
-            .intersection(held_out)
-            .difference(READINGS[name].given)
-        )
-        gained, lost = (held[both] & ~control[both]).sum(), (~held[both] & control[both]).sum()
-        rows.append(
-            {
-                "reading": name,
-                "words": READINGS[name].words,
-                "makes_hold": gained,
-                "makes_fail": lost,
-            }
-        )
-    table = pd.DataFrame(rows)
-    return table.iloc[
-        (table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")
-    ].reset_index(drop=True)
+    _, gained, lost = (kind[kind.index.isin(held_out)].sum() for kind in changes(found))
+    table = pd.DataFrame({"makes_hold": gained, "makes_fail": lost}).astype(int)
+    table.insert(0, "words", [READINGS[name].words for name in table.index])
+    order = (table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")
+    return table.iloc[order].rename_axis("reading").reset_index()
 
 
 def explanation(job: SimpleNamespace) -> None:

@@ -82,16 +82,10 @@ def matched_histories(
     """
     found = {}
     for force, rows in group.groupby("force_gf"):
-        ramp = rows["ramp_gf_per_s"].iloc[0]
-        programmes = (
-            [f"ramp{ramp:g}", f"press{force:g}"] if ramp == ramp else ["ramp40", f"press{force:g}"]
-        )
-        for programme in programmes:
-            chosen = [
-                h
-                for h in surfaces(programme).histories(histories).values()
-                if abs(float(force_gf(h)[-1]) / force - 1) < 0.01
-            ]
+        ramp = rows["ramp_gf_per_s"].fillna(40).iloc[0]
+        for programme in (f"ramp{ramp:g}", f"press{force:g}"):
+            pressed = surfaces(programme).histories(histories).values()
+            chosen = [h for h in pressed if abs(float(force_gf(h)[-1]) / force - 1) < 0.01]
             if len(chosen) >= 4:
                 found[force] = sorted(chosen, key=curvature_of)
                 break
@@ -143,35 +137,32 @@ def rate_fit(
         return windowed(history, history["time"].values, energy(history, RECEPTOR_DEPTH), window)
 
     thesis, held = by(THESIS_RATE), across(matched, group, curvature, mean_energy)
-    dynamic = thesis - by(THESIS_RATE.without_rate())
+    dynamic, ones = thesis - by(THESIS_RATE.without_rate()), np.ones(len(data))
 
-    def factor(rows):
-        return linear(np.column_stack([thesis[rows], np.ones(len(rows))]), data[rows])
+    def offset(rows):
+        return [np.mean((thesis - data)[rows])]
 
-    def static(
-        rows,
-        # of the energy's mean: as good as the mean of the law while the energy does not cross the
-        # threshold
-    ):
+    def static(rows):
+        """Of the energy's mean: as good as the mean of the law while the energy does not cross
+        the threshold.
+        """
         law = gain_and_threshold(held[rows], (data - dynamic)[rows])
         return np.array([law.gain, law.threshold])
 
-    rows = list(range(len(data)))
-    constants = [
-        jackknife(of, rows)
-        for of in (lambda rows: [np.mean((thesis - data)[rows])], static, factor)
-    ]
+    def factor(rows):
+        return linear(np.column_stack([thesis, ones])[rows], data[rows])
+
+    constants = [jackknife(fit, list(range(len(data)))) for fit in (offset, static, factor)]
+    _, fitted, (scale, spontaneous) = (found[:, 0] for found in constants)
     predicted = (
         thesis,
-        GainAndThreshold(*constants[1][:, 0])(held) + dynamic,
-        constants[2][:, 0] @ [thesis, np.ones(len(data))],
+        GainAndThreshold(*fitted)(held) + dynamic,
+        scale * thesis + spontaneous,
     )
     return dict(zip(RATE_FITS, zip(constants, predicted, strict=True), strict=True))
 
 
 def kind(group: pd.DataFrame) -> str:
-    stimuli = "/".join(dict.fromkeys(group["stimulus"]))
-    return (
-        f"{'/'.join(dict.fromkeys(group['species']))}, {stimuli}; simulated: cylinders on a "
-        "human pad"
-    )
+    """Whose rates of which stimuli they are, and what is simulated."""
+    species, stimuli = ("/".join(group[name].unique()) for name in ("species", "stimulus"))
+    return f"{species}, {stimuli}; simulated: cylinders on a human pad"

@@ -55,22 +55,9 @@ from fingerpad.measures.features import Histories, scene_name
 from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
 
-FIT_COLUMNS = (
-    "law",
-    "scenes",
-    "receptor_depth (um)",
-    "quantity",
-    "estimate",
-    "low_95",
-    "high_95",
-    "units",
-    "residual_rms",
-    "residual_units",
-    "r_squared",
-    "samples",
-    "discretisation (%)",
-    "note",
-)
+KEY = ["law", "scenes", "receptor_depth (um)", "quantity"]
+FIT_COLUMNS = [*KEY, "estimate", "low_95", "high_95", "units", "residual_rms", "residual_units"]
+FIT_COLUMNS += ["r_squared", "samples", "discretisation (%)", "note"]
 
 
 def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) -> pd.DataFrame:
@@ -91,27 +78,23 @@ def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) 
         rates: over rates); "discretisation" is by how much the estimate differs when fitted to the
         companions.
     """
-    table = pd.DataFrame(
-        [*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)],
-        columns=FIT_COLUMNS,
-    )
+    rows = [*_simulated_laws(histories), *_rate_law(histories, rates)]
+    table = pd.DataFrame(rows, columns=FIT_COLUMNS)
     if len(NINE.histories(coarse)) == len(NINE.histories(histories)) > 1:
-        rough = pd.DataFrame(_simulated_laws(coarse, intervals=False))
-        key = ["law", "scenes", "receptor_depth (um)", "quantity"]
-        matched = (
-            table[key]
-            .merge(rough.drop_duplicates(key)[[*key, "estimate"]], on=key, how="left")["estimate"]
-            .to_numpy(float)
-        )
-        off = 100 * np.abs(matched / table["estimate"].to_numpy(float) - 1)
+        rough = pd.DataFrame(_simulated_laws(coarse)).drop_duplicates(KEY)[[*KEY, "estimate"]]
+        other = table[KEY].merge(rough, on=KEY, how="left")["estimate"].to_numpy(float)
+        off = 100 * np.abs(other / table["estimate"].to_numpy(float) - 1)
         table["discretisation (%)"] = np.where(table["units"] == "%", np.nan, off)
     return table
 
 
-def _simulated_laws(histories: Histories, intervals: bool) -> Iterator[dict]:
+def _simulated_laws(histories: Histories) -> Iterator[dict]:
     surfaces = NINE.histories(histories)
-    yield from _node_laws(surfaces, intervals)
-    yield from _sums(histories, surfaces, intervals)
+    if NODE_SURFACE in surfaces:
+        yield from _laws_of_one_surface(surfaces[NODE_SURFACE])
+    if len(surfaces) > 1:
+        yield from _node_laws(surfaces)
+        yield from _sums(histories, surfaces)
 
 
 def _row(
@@ -125,94 +108,92 @@ def _row(
     depth : m, of the receptor.
     left : data and what the law predicts of them.
     """
-    ends = dict(zip(FIT_COLUMNS[4:7], np.append(values, [np.nan] * 2), strict=False))
-    row = {"law": law, "scenes": scenes, "receptor_depth (um)": depth * 1e6, "quantity": quantity}
-    row |= ends | {"units": units, "note": note}
+    estimate, low, high = np.append(values, [np.nan] * 2)[:3]
+    said = (law, scenes, depth * 1e6, quantity, estimate, low, high, units)
     if left is not None:
         data, predicted = left
-        row |= {"residual_rms": rms(data - predicted), "residual_units": left_units}
-        row |= {"r_squared": r_squared(data, predicted), "samples": len(data)}
-    return row
+        said += rms(data - predicted), left_units, r_squared(data, predicted), len(data)
+    return dict(zip(FIT_COLUMNS, said, strict=False)) | {"note": note}
 
 
 def _relative(law, scenes, quantity, left, note="", depth=np.nan) -> dict:
     """Row of a residual relative to the data themselves, %."""
-    share = 100 * rms(left[0] - left[1]) / rms(left[0])
-    return _row(law, scenes, quantity, share, "%", note, depth, left)
+    return _row(law, scenes, quantity, _share(left), "%", note, depth, left)
 
 
-def _constants(law, scenes, units, found, left, note, depth=np.nan) -> Iterator[dict]:
+def _share(left: tuple[np.ndarray, np.ndarray]) -> float:
+    """Size of a residual over that of the data, %."""
+    return 100 * rms(left[0] - left[1]) / rms(left[0])
+
+
+def _constants(
+    law, scenes, units, found, left, note, depth=np.nan, left_units="Pa"
+) -> Iterator[dict]:
     """A row a constant; what the law leaves over and the note stand in the first."""
-    for k, (name, unit) in enumerate(units.items()):
-        first = ("", depth, None) if k else (note, depth, left)
-        yield _row(law, scenes, name, found[k], unit, *first)
+    for (name, unit), values in zip(units.items(), found, strict=True):
+        yield _row(law, scenes, name, values, unit, note, depth, left, left_units)
+        left, note = None, ""
 
 
-def _fitted(fit, groups: Sequence, intervals: bool) -> np.ndarray:
-    """Estimates (p, 3) fitted to groups, low and high last; NaN without intervals."""
-    if intervals:
-        return jackknife(fit, groups)
-    found = np.asarray(fit(groups))
-    return np.column_stack([found, np.full((len(found), 2), np.nan)])
+def _terms(law: str) -> dict[str, str]:
+    """Constants of Eq 4-1, 4-2 or 4-3 and their units."""
+    return {f"A{k}, {term}": TERM_UNITS[term] for k, term in enumerate(NODE_TERMS[law], start=1)}
 
 
-def _node_laws(surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dict]:
-    units = {
-        law: {f"A{k}, {term}": TERM_UNITS[term] for k, term in enumerate(terms, start=1)}
-        for law, terms in NODE_TERMS.items()
-    }
+def _pressures(law: str, nodes: pd.DataFrame, constants: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Pressures of nodes, and what a law makes of them."""
+    used = pressure_by_law(law, nodes, constants)
+    return used[P], used[P_LAW]
 
-    def left(law, nodes, constants):
-        used = pressure_by_law(law, nodes, constants)
-        return used[P], used[P_LAW]
 
-    def constants(law, groups, where, note):
-        found = _fitted(lambda chosen: fit_nodes(law, pd.concat(chosen)), groups, intervals)
-        over = left(law, pd.concat(groups), found[:, 0])
-        return found[:, 0], _constants(law, where, units[law], found, over, note)
+def _fit_groups(law: str, groups: Sequence[pd.DataFrame]) -> np.ndarray:
+    """Constants (p, 3) of a law of nodes, with intervals over groups."""
+    return jackknife(lambda chosen: fit_nodes(law, pd.concat(chosen)), groups)
 
-    if NODE_SURFACE in surfaces:
-        nodes = contact_nodes(surfaces[NODE_SURFACE], NODE_COUNT)
-        groups = [group for _, group in nodes.groupby(NODE)]
-        where = f"{scene_name('ramp40', NODE_SURFACE)}, {len(groups)} nodes"
-        for law in ("4-1", "4-1 read without an exponent"):
-            note = "one set for all nodes, each from its peak on; intervals over nodes"
-            yield from constants(law, groups, where, note)[1]
-            alone = np.array([fit_nodes(law, group) for group in groups])
-            shares = [r_squared(*left(law, *pair)) for pair in zip(groups, alone, strict=True)]
-            note = (
-                "median and range over nodes, not an interval; "
-                f"R2 of the nodes {min(shares):.3f} to {max(shares):.3f}"
-            )
-            title = f"{law}, a set for each node"
-            for (name, unit), values in zip(units[law].items(), alone.T, strict=True):
-                ends = np.quantile(values, [0.5, 0, 1])
-                yield _row(title, where, name, ends, unit, note)
-                note = ""
-    if len(surfaces) < 2:
-        return
+
+def _laws_of_one_surface(history: xr.Dataset) -> Iterator[dict]:
+    nodes = contact_nodes(history, NODE_COUNT)
+    groups = [group for _, group in nodes.groupby(NODE)]
+    where = f"{scene_name('ramp40', NODE_SURFACE)}, {len(groups)} nodes"
+    for law in ("4-1", "4-1 read without an exponent"):
+        found, units = _fit_groups(law, groups), _terms(law)
+        note = "one set for all nodes, each from its peak on; intervals over nodes"
+        left = _pressures(law, nodes, found[:, 0])
+        yield from _constants(law, where, units, found, left, note)
+        alone = np.array([fit_nodes(law, group) for group in groups])
+        pairs = zip(groups, alone, strict=True)
+        shares = [r_squared(*_pressures(law, *pair)) for pair in pairs]
+        note = (
+            "median and range over nodes, not an interval; "
+            f"R2 of the nodes {min(shares):.3f} to {max(shares):.3f}"
+        )
+        spread = np.quantile(alone, [0.5, 0, 1], axis=0).T
+        yield from _constants(f"{law}, a set for each node", where, units, spread, None, note)
+
+
+def _node_laws(surfaces: dict[str, xr.Dataset]) -> Iterator[dict]:
     nodes = {label: contact_nodes(history) for label, history in surfaces.items()}
     where = f"ramp40, {len(surfaces)} surfaces"
     for law, which in (
         ("4-2", "all nodes in contact up to the top of the ramp"),
         ("4-3", "each node from its peak on"),
     ):
-        note = f"intervals over surfaces; {which}"
-        whole, rows = constants(law, list(nodes.values()), where, note)
-        yield from rows
+        found, note = _fit_groups(law, [*nodes.values()]), f"intervals over surfaces; {which}"
+        left = _pressures(law, pd.concat(nodes.values()), found[:, 0])
+        yield from _constants(law, where, _terms(law), found, left, note)
         for label, own in nodes.items():
             rest = pd.concat([other for name, other in nodes.items() if name != label])
-            data, predicted = left(law, own, fit_nodes(law, rest))
-            share = 100 * rms(data - predicted) / rms(data)
+            share = _share(_pressures(law, own, fit_nodes(law, rest)))
             note = f"{share:.1f} % when fitted to the other surfaces"
             name = f"residual over the pressure, K = {label}"
-            yield _relative(law, where, name, left(law, own, whole), note)
+            yield _relative(law, where, name, _pressures(law, own, found[:, 0]), note)
 
 
-def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dict]:
-    if len(surfaces) < 2:
-        return
-    where, what = f"ramp40, {len(surfaces)} surfaces", "residual over the energy"
+WHAT = "residual over the energy"
+
+
+def _sums(histories: Histories, surfaces: dict[str, xr.Dataset]) -> Iterator[dict]:
+    where, note = f"ramp40, {len(surfaces)} surfaces", "intervals over surfaces"
     for depth, with_depth in [*((z, True) for z in DEPTHS), (RECEPTOR_DEPTH, False)]:
         samples = [skin_sample(history, depth) for history in surfaces.values()]
         units = {"r": "mm", "A2": "1/m"} | ({"A1": "1/m2"} if with_depth else {})
@@ -221,29 +202,27 @@ def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool
             law = spatial_sum(chosen, with_depth)
             return [law.r * 1e3, law.constant, law.per_depth][: 2 + with_depth]
 
-        found = _fitted(constants, samples, intervals)
+        found = jackknife(constants, samples)
         law = SpatialSum(found[0, 0] * 1e-3, found[2, 0] if with_depth else 0.0, found[1, 0])
         title = "4-4" if with_depth else "4-4 without depth of indentation"
-        left, note = _energies(law, samples), "intervals over surfaces"
+        left = _energies(law, samples)
         yield from _constants(title, where, units, found, left, note, depth)
         if abs(depth - RECEPTOR_DEPTH) > 1e-9:
             continue
         for label, sample in zip(surfaces, samples, strict=True):
-            name = f"{what}, K = {label}"
+            name = f"{WHAT}, K = {label}"
             yield _relative(title, where, name, _energies(law, [sample]), depth=depth)
         if with_depth:
-            yield from _transferred(law, histories, depth, what)
+            yield from _transferred(law, histories, depth)
 
 
 def _energies(law: SpatialSum, samples: Sequence[SkinSample], shift=0.0) -> tuple[np.ndarray, ...]:
     """Strain energies of samples, and what a law makes of them."""
-    return tuple(
-        np.concatenate(side)
-        for side in ([s.energy for s in samples], [s.by(law, shift) for s in samples])
-    )
+    simulated, predicted = ([s.energy for s in samples], [s.by(law, shift) for s in samples])
+    return np.concatenate(simulated), np.concatenate(predicted)
 
 
-def _transferred(law: SpatialSum, histories: Histories, depth: float, what: str) -> Iterator[dict]:
+def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterator[dict]:
     """How the sum fitted to the slow ramps does on what it was not fitted to: fast ramps, and
     strokes with four shifts.
     """
@@ -251,7 +230,7 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float, what: str)
     fast = [skin_sample(history, depth) for history in FAST.histories(histories).values()]
     if fast:
         where = f"ramp150, {len(fast)} surfaces"
-        yield _relative(title, where, what, _energies(law, fast), depth=depth)
+        yield _relative(title, where, WHAT, _energies(law, fast), depth=depth)
     moving = {k: history for k, history in strokes(histories).items() if k not in SUB.values()}
     if not moving:
         return
@@ -259,7 +238,7 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float, what: str)
     shift = constant_shift(law, skin_sample(moving[chosen], depth))
     note = "closest to this stroke, then kept for every velocity"
     yield _row(title, chosen, "constant lateral shift", shift * 1e3, "mm", note, depth)
-    yield _refitted(moving[chosen], chosen, depth, what)
+    yield _refitted(moving[chosen], chosen, depth)
     for name, history in moving.items():
         sample, skin = skin_sample(history, depth), skin_shift(history)
         share = _share_of_skin(law, sample, skin)
@@ -270,10 +249,10 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float, what: str)
             ("a share of the skin's shift", share * skin, f"{share:.2f} of it"),
         ):
             left = _energies(law, [sample], value)
-            yield _relative(title, name, f"{what}, {how}", left, note, depth)
+            yield _relative(title, name, f"{WHAT}, {how}", left, note, depth)
 
 
-def _refitted(history: xr.Dataset, scene: str, depth: float, what: str) -> dict:
+def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
     """What is left when all constants of Eq 4-4 and a constant shift are fitted to a stroke itself:
     what its form cannot do.
     """
@@ -282,12 +261,12 @@ def _refitted(history: xr.Dataset, scene: str, depth: float, what: str) -> dict:
         sample = skin_sample(history, depth, shift)
         law = spatial_sum([sample])
         fits.append((_energies(law, [sample], shift), law, shift))
-    left, law, shift = min(fits, key=lambda fit: rms(fit[0][0] - fit[0][1]))
+    left, law, shift = min(fits, key=lambda fit: _share(fit[0]))
     note = (
         f"r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m, "
         f"shift {shift * 1e3:.2g} mm"
     )
-    return _relative("4-4, fitted to the stroke", scene, what, left, note, depth)
+    return _relative("4-4, fitted to the stroke", scene, WHAT, left, note, depth)
 
 
 def _share_of_skin(law: SpatialSum, sample: SkinSample, skin: np.ndarray) -> float:
@@ -298,24 +277,24 @@ def _share_of_skin(law: SpatialSum, sample: SkinSample, skin: np.ndarray) -> flo
     def misfit(share: float) -> float:
         return rms(sample.by(law, share * skin) - sample.energy)
 
-    shares = np.arange(0, 1.505, 0.01)
-    near = 10 * int(np.argmin([misfit(share) for share in shares[::10]]))
-    return float(min(shares[max(near - 10, 0) : near + 11], key=misfit))
+    return float(min(np.arange(0, 1.505, 0.01), key=misfit))
 
 
 def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
     """Eq 5-1 with the thesis's constants against the rates at hand, and what its constants become
     when fitted to them.
     """
-    depth, stated = RECEPTOR_DEPTH, "5-1, thesis's constants"
+    units = {
+        "A1": "(impulses/s)/Pa",
+        "A2": "impulses/Pa",
+        "threshold of the energy": "Pa",
+        "threshold of the rate": "Pa/s",
+    }
+    law, stated = THESIS_RATE, "5-1, thesis's constants"
+    values = (law.per_energy, law.per_rate, law.threshold, law.rate_threshold)
     note = "stated, Figs 5-20 and 5-21"
-    for name, value, unit in (
-        ("A1", THESIS_RATE.per_energy, "(impulses/s)/Pa"),
-        ("A2", THESIS_RATE.per_rate, "impulses/Pa"),
-        ("threshold of the energy", THESIS_RATE.threshold, "Pa"),
-        ("threshold of the rate", THESIS_RATE.rate_threshold, "Pa/s"),
-    ):
-        yield _row(stated, "pressed and stroked", name, value, unit, note, depth)
+    for (name, unit), value in zip(units.items(), values, strict=True):
+        yield _row(stated, "pressed and stroked", name, value, unit, note, RECEPTOR_DEPTH)
     for title, group in rate_sets(rates[rates["receptor"] == "SA-I"]):
         matched = matched_histories(histories, group)
         if matched is None:
@@ -324,19 +303,19 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
             continue
         readings = [rate_fit(matched, group, curvature) for curvature in assignments(group)]
         data = group["rate_per_s"].to_numpy(float)
-        for law, units in RATE_FITS.items():
-            constants, predicted = readings[0][law]
+        for way, units in RATE_FITS.items():
+            found, predicted = readings[0][way]
             note = f"{len(data)} rates; {kind(group)}"
             if len(readings) > 1:
-                shares = [r_squared(data, reading[law][1]) for reading in readings]
+                shares = [r_squared(data, reading[way][1]) for reading in readings]
                 note += (
                     f"; R2 {min(shares):.2f} to {max(shares):.2f} over {len(readings)} ways "
                     "to read which surface a rate is of"
                 )
-            for k, (name, unit) in enumerate(units.items()):
-                left = None if k else (data, predicted)
-                first = "" if k else note
-                yield _row(law, title, name, constants[k], unit, first, depth, left, "impulses/s")
+            left = data, predicted
+            yield from _constants(
+                way, title, units, found, left, note, RECEPTOR_DEPTH, "impulses/s"
+            )
 
 
 TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")

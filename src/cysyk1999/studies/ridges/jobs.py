@@ -5,42 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cysyk1999.job import Job, part
+from cysyk1999.measures.direction import KEY
 from cysyk1999.project import Project
-from cysyk1999.studies.ridges.frames import ridge_data
-from cysyk1999.studies.ridges.run import ridge_cases
+from cysyk1999.studies.ridges.frames import FRAMES, ridge_data
+from cysyk1999.studies.ridges.run import Case, ridge_cases
 
-RIDGED, OUTER = "ridged_stroke_right", ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
-HEIGHT, FRICTION = 150, 0.35
-"""Height (um) of ridges and coefficient of friction of RIDGED; the study varies one at a time."""
+RIDGED = "ridged_stroke_right"
+"""The scene whose ridges are varied; those it has itself are `KEY`."""
 MESHES = (("fine",), ("curved", "straight", "shifted"))
-"""Further meshes for that case, by process."""
+"""Further meshes for the ridges of RIDGED, by process."""
 
 
 @part("ridges", in_default=True)
 def ridges(project: Project) -> Iterator[Job]:
     """Pads with ridges: the study of the direction of strokes."""
-    c = project.config
-    if not c.ridge_heights:
+    heights, (height, friction) = project.config.ridge_heights, KEY
+    if not heights:
         return
-    pairs = [(h, FRICTION) for h in c.ridge_heights] + [(HEIGHT, mu) for mu in c.ridge_frictions]
-    pairs = list(dict.fromkeys(pairs))
-    both = [[f"{h:g}_{mu:g}_{mesh}" for mesh in ("thesis", "coarse")] for h, mu in pairs]
-    groups = [sum(both[k : k + 2], []) for k in range(0, len(both), 2)]
-    if (HEIGHT, FRICTION) in pairs:
-        groups += [[f"{HEIGHT}_{FRICTION}_{mesh}" for mesh in meshes] for meshes in MESHES]
-    cases = []
-    for k, group in enumerate(groups, start=1):
-        histories = [project.result(f"ridges/{name}/history.nc") for name in group]
-        cases += histories
-        made, values = {"histories": histories}, project.values_of(RIDGED)
-        more = {"mem_mb": 2000, "runtime": 30, "priority": 1}
-        yield Job(ridge_cases, project.reads(RIDGED), made, values, f"ridge_cases_{k}", **more)
-    names = ["offset", "height", "friction", "mesh", "outer"]
-    data = [project.result(f"ridges/{name}.csv") for name in names]
-    read = {
-        "cases": cases,
-        "histories": project.histories(OUTER),
-        "coarse": project.companions(OUTER[:1]),
-    }
-    yield Job(ridge_data, read, {"data": data}, priority=1)
-    yield project.study_pictures("ridges", names, data, "cysyk1999.studies.ridges.picture")
+    cases = [Case(h, friction, mesh) for h in heights for mesh in ("thesis", "coarse")]
+    groups = [cases[k : k + 4] for k in range(0, len(cases), 4)]
+    if height in heights:
+        groups += [[Case(height, friction, mesh) for mesh in meshes] for meshes in MESHES]
+    histories = [
+        [project.result(f"ridges/{case}/history.nc") for case in group] for group in groups
+    ]
+    more = {"mem_mb": 2000, "runtime": 30, "priority": 1}
+    for k, made in enumerate(histories, start=1):
+        values, name = project.values_of(RIDGED), f"ridge_cases_{k}"
+        yield Job(ridge_cases, project.reads(RIDGED), {"histories": made}, values, name, **more)
+    data = [project.result(f"ridges/{name}.csv") for name in FRAMES]
+    yield Job(ridge_data, {"cases": sum(histories, [])}, {"data": data}, priority=1)
+    yield project.study_pictures("ridges", FRAMES, data, "cysyk1999.studies.ridges.picture")

@@ -1,24 +1,19 @@
-"""The study of ridges: what a receptor feels of direction, against its place, ridge height,
-friction and mesh; outer ridges.
+"""The study of ridges: what a receptor feels of direction, against its place, ridge height and
+mesh.
 
 Each figure is drawn from its data frame alone, see :mod:`cysyk1999.studies.ridges.frames`. The
-directional index is that of
-:mod:`cysyk1999.measures.direction`.
+directional index is that of :mod:`cysyk1999.measures.direction`.
 """
 
 from __future__ import annotations
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 
 from cysyk1999.measures.direction import BESIDE, DEPTH, KEY
-from cysyk1999.measures.quantities import DISTANCE, SED, P, X
 from cysyk1999.publishing.style import (
     CATEGORIES,
     DASHED,
-    DOTTED,
     GREY,
     HIGHLIGHT,
     INK,
@@ -28,7 +23,7 @@ from cysyk1999.publishing.style import (
 )
 
 OFFSET, INDEX, BAND = "offset (um)", "directional_index (1)", "discretisation_error (1)"
-HEIGHT, FRICTION, EDGE = "ridge_height (um)", "friction (1)", "element_edge (um)"
+HEIGHT, EDGE = "ridge_height (um)", "element_edge (um)"
 RECEPTOR, RIGHT, LEFT, NODES = "receptor_depth (um)", "right (Pa)", "left (Pa)", "nodes (1)"
 MESHES = {"coarse": 268.8, "thesis": 134.4, "fine": 67.2}
 """Element edge (um) along the skin of the meshes that resolve the ridges."""
@@ -43,242 +38,123 @@ RECEPTORS_SWEPT = (
     "epidermis, 25 µm above the flank",
     "dermis, 25 µm below the flank",
 )
-LOOKS = {
-    name: {"color": colour, "marker": marker, "ls": line}
-    for name, colour, marker, line in zip(
-        RECEPTORS_SWEPT, (INK, *CATEGORIES[1::-1]), "os^", ("-", DASHED, DOTTED), strict=True
-    )
-}
 DEFINITION = (
     "Simulated. Index: (right − left) / (right + left) of the strain energy under a plate, "
     "over 2 to 4 mm of stroke. "
 )
-
-
-# --- pictures ------------------------------------------------------------------------------------
-
-
-def _curve(ax: Axes, rows: pd.DataFrame, x: str, look: dict, label: str) -> None:
-    """A curve with its discretisation error: bars at heights, between which nothing is known, a
-    band elsewhere.
-    """
-    index, error, colour = rows[INDEX], rows[BAND], look["color"]
-    if x != HEIGHT:
-        ax.fill_between(rows[x], index - error, index + error, color=colour, alpha=0.25, lw=0)
-    ax.plot(rows[x], index, ms=3.5, label=label, **look | ({"ls": "none"} if x == HEIGHT else {}))
-    if x == HEIGHT:
-        ax.errorbar(rows[x], index, error, fmt="none", ecolor=colour, elinewidth=0.8)
+DEEP, BY = DEPTH * 1e6, BESIDE * 1e6  # um
 
 
 @styled
 def offset(frame: pd.DataFrame) -> Figure:
     """Map round a ridge above, profile at the thesis's depth below."""
-    profile_rows = frame[frame["panel"] == "profile"]
-    note = [
-        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; "
-        "circles: the thesis's receptors. Fine mesh, "
-        "not smoothed; band: difference to twice the edge.",
-    ]
-    fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
-    top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
-    grid = frame[frame["panel"] == "map"].pivot(index=RECEPTOR, columns=OFFSET, values=INDEX)
-    shown = top.pcolormesh(
-        grid.columns,
-        grid.index,
-        grid,
-        cmap="RdBu_r",
-        vmin=-0.6,
-        vmax=0.6,
-        shading="nearest",
-        rasterized=True,
+    note = (
+        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEEP:.0f} µm; circles: the "
+        "thesis's receptors. Fine mesh, not smoothed; band: difference to twice the edge."
     )
-    bar = fig.colorbar(shown, ax=top, pad=0.015, aspect=18)
-    bar.set_label("directional index (red: more to the right)")
-    edge = frame[frame["panel"] == "boundary"]
-    top.plot(edge[OFFSET], edge[RECEPTOR], color=INK, lw=1.5)
-    top.axhline(DEPTH * 1e6, color=INK, lw=0.8, ls=(0, (4, 2)))
-    top.plot(
-        [-BESIDE * 1e6, 0, BESIDE * 1e6],
-        [DEPTH * 1e6] * 3,
-        "o",
-        mfc="white",
-        mec=INK,
-        ms=5,
-        ls="none",
-    )
-    top.set(ylim=(1105, 695), ylabel="depth below the skin (µm)")
-    top.text(-244, 712, "epidermis", va="top", fontsize=6.5)
-    top.text(-244, 1092, "dermis", va="bottom", fontsize=6.5)
+    fig = study_figure("Ridges: directional index round a ridge", [note], 5.4)
+    around, profile = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
+    panels = dict(list(frame.groupby("panel")))
+    grid = panels["map"].pivot(index=RECEPTOR, columns=OFFSET, values=INDEX)
+    look = {"cmap": "RdBu_r", "vmin": -0.6, "vmax": 0.6, "shading": "nearest", "rasterized": True}
+    shown = around.pcolormesh(grid.columns, grid.index, grid, **look)
+    label = "directional index (red: more to the right)"
+    fig.colorbar(shown, ax=around, pad=0.015, aspect=18, label=label)
+    edge = panels["boundary"]
+    around.plot(edge[OFFSET], edge[RECEPTOR], color=INK, lw=1.5)
+    around.axhline(DEEP, color=INK, lw=0.8, ls=(0, (4, 2)))
+    around.plot([-BY, 0, BY], [DEEP] * 3, "o", mfc="white", mec=INK, ms=5)
+    around.set(ylim=(1105, 695), ylabel="depth below the skin (µm)")
+    around.text(-244, 712, "epidermis", va="top", fontsize=6.5)
+    around.text(-244, 1092, "dermis", va="bottom", fontsize=6.5)
     looks = {
-        "no ridges": {"color": GREY, "marker": "", "ls": DASHED},
-        "inner ridges": {"color": HIGHLIGHT, "marker": "o", "ls": "-"},
+        "no ridges": {"color": GREY, "ls": DASHED},
+        "inner ridges": {"color": HIGHLIGHT, "marker": "o"},
     }
     for series, look in looks.items():
-        _curve(ax, profile_rows[profile_rows["series"] == series], OFFSET, look, series)
-    inner = profile_rows[profile_rows["series"] == "inner ridges"].set_index(OFFSET)
-    epidermis = edge.loc[edge[RECEPTOR] > DEPTH * 1e6, OFFSET]
-    ax.axvspan(epidermis.min(), epidermis.max(), color=LAYER_COLOURS["epidermis"], alpha=0.35, lw=0)
-    ax.text(0, -0.72, "epidermis", ha="center", fontsize=6.5)
-    value, error = inner.loc[-BESIDE * 1e6, [INDEX, BAND]]
-    ax.annotate(
-        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} "
-        "times the energy",
-        (-BESIDE * 1e6, value),
+        rows = panels["profile"][panels["profile"]["series"] == series]
+        ends = rows[INDEX] - rows[BAND], rows[INDEX] + rows[BAND]
+        profile.fill_between(rows[OFFSET], *ends, color=look["color"], alpha=0.25, lw=0)
+        profile.plot(rows[OFFSET], rows[INDEX], ms=3.5, label=series, **look)
+    inside = edge.loc[edge[RECEPTOR] > DEEP, OFFSET]
+    colour = LAYER_COLOURS["epidermis"]
+    profile.axvspan(inside.min(), inside.max(), color=colour, alpha=0.35, lw=0)
+    profile.text(0, -0.72, "epidermis", ha="center", fontsize=6.5)
+    value, error = rows.set_index(OFFSET).loc[-BY, [INDEX, BAND]]
+    ratio = (1 + value) / (1 - value)
+    profile.annotate(
+        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{ratio:.1f} times the energy",
+        (-BY, value),
         (-75, 0.45),
         ha="right",
         va="center",
         fontsize=6.5,
         arrowprops={"arrowstyle": "-", "lw": 0.6, "color": INK},
     )
-    ax.axhline(0, color=GREY, lw=0.6)
-    ax.set(
-        xlim=(-250, 250),
-        ylim=(-0.8, 0.8),
-        xlabel="offset from the ridge's tip (µm)",
-        ylabel=f"directional index at {DEPTH * 1e6:.0f} µm",
-    )
-    ax.legend(loc="upper right")
+    profile.axhline(0, color=GREY, lw=0.6)
+    profile.set(xlim=(-250, 250), xlabel="offset from the ridge's tip (µm)")
+    profile.set(ylim=(-0.8, 0.8), ylabel=f"directional index at {DEEP:.0f} µm")
+    profile.legend(loc="upper right")
     return fig
 
 
-def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str) -> Figure:
-    note = [DEFINITION + extra + " Band: difference to up to twice the edge."]
-    fig = study_figure(title, note, 4.2)
+@styled
+def height(frame: pd.DataFrame) -> Figure:
+    """Index against the ridges' height: points with the error of the mesh as bars."""
+    note = (
+        f"{DEFINITION}Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its "
+        "receptors follow the boundary. Band: difference to up to twice the edge."
+    )
+    fig = study_figure("Ridges: directional index against their height", [note], 4.2)
     ax = fig.subplots()
-    for series, look in LOOKS.items():
-        rows = frame[frame["series"] == series].sort_values(column)
-        if series != RECEPTORS_SWEPT[0] or column != HEIGHT:
-            _curve(ax, rows, column, look, series)
-            continue
-        for layer, part in rows.groupby("layer", sort=False):  # it changes with the height
-            _curve(ax, part, column, look, series if layer == "dermis" else "")
-            if layer == "epidermis":
-                first = part[[column, INDEX]].iloc[0]
-                place = {"textcoords": "offset points", "ha": "center", "fontsize": 7}
-                ax.annotate("in the epidermis", first, (0, 7), **place)
+    colours = (INK, *CATEGORIES[1::-1])
+    for series, colour, marker in zip(RECEPTORS_SWEPT, colours, "os^", strict=True):
+        rows = frame[frame["series"] == series].sort_values(HEIGHT)
+        look = {"color": colour, "marker": marker, "ms": 3.5, "ls": "none", "label": series}
+        ax.plot(rows[HEIGHT], rows[INDEX], **look)
+        bars = {"fmt": "none", "ecolor": colour, "elinewidth": 0.8}
+        ax.errorbar(rows[HEIGHT], rows[INDEX], rows[BAND], **bars)
+    thesis = frame[frame["series"] == RECEPTORS_SWEPT[0]].sort_values(HEIGHT)
+    for place in thesis.loc[thesis["layer"] == "epidermis", [HEIGHT, INDEX]].to_numpy()[:1]:
+        look = {"textcoords": "offset points", "ha": "center", "fontsize": 7}
+        ax.annotate("in the epidermis", place, (0, 7), **look)
     ax.axhline(0, color=GREY, lw=0.6)
-    ax.set(xlabel=xlabel, ylabel="directional index", ylim=(-0.8, 0.8))
+    ax.set(xlabel="ridge height (µm)", ylabel="directional index", ylim=(-0.8, 0.8))
     ax.margins(x=0.03)
     ax.legend(loc="lower left", fontsize=6.5)
     return fig
 
 
 @styled
-def height(frame: pd.DataFrame) -> Figure:
-    """Index against the ridges' height."""
-    extra = (
-        f"Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its "
-        "receptors follow the boundary."
-    )
-    return _sweep(
-        frame, HEIGHT, "Ridges: directional index against their height", "ridge height (µm)", extra
-    )
-
-
-@styled
-def friction(frame: pd.DataFrame) -> Figure:
-    """Index against the coefficient of friction."""
-    extra = f"Ridges {KEY[0]:g} µm high, 0.48 mm apart. Flank: 120 µm from the tip, x = −120 µm."
-    return _sweep(
-        frame,
-        FRICTION,
-        "Ridges: directional index against friction",
-        "coefficient of friction",
-        extra,
-    )
-
-
-@styled
 def mesh(frame: pd.DataFrame) -> Figure:
     """Energies and index at the thesis's receptor against the mesh."""
     resolved = frame[frame["panel"] == "resolved"].sort_values(EDGE)
-    drawn = frame[frame["panel"] == "drawn"]
-    note = [
-        DEFINITION
-        + f"Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a tip. Open: "
-        "ridges on elements of the "
-        "thesis's size (four to a pitch, one to a height), in three ways.",
-    ]
-    fig = study_figure("Ridges: how far to believe the directional index", note, 3.9)
+    note = (
+        f"{DEFINITION}Receptor {DEEP:.0f} µm deep, {BY:.0f} µm left of a tip. Open: ridges on "
+        "elements of the thesis's size (four to a pitch, one to a height), in three ways."
+    )
+    fig = study_figure("Ridges: how far to believe the directional index", [note], 3.9)
     left, right = fig.subplots(1, 2)
-    for column, colour, name in (
-        (RIGHT, HIGHLIGHT, "plate to the right"),
-        (LEFT, CATEGORIES[1], "plate to the left"),
-    ):
-        left.plot(resolved[EDGE], resolved[column], "o-", color=colour, ms=4, label=name)
-    right.plot(resolved[EDGE], resolved[INDEX], "o-", color=INK, ms=4, label="ridges resolved")
-    for marker, (series, name) in zip("D^v", DRAWN.items(), strict=True):
-        rows = drawn[drawn["series"] == series]
-        for column, colour in ((RIGHT, HIGHLIGHT), (LEFT, CATEGORIES[1])):
-            left.plot(rows[EDGE], rows[column], marker, mfc="white", mec=colour, ms=5)
-        right.plot(
-            rows[EDGE], rows[INDEX], marker, mfc="white", mec=INK, ms=5, ls="none", label=name
-        )
+    curves = (
+        (left, RIGHT, HIGHLIGHT, "plate to the right"),
+        (left, LEFT, CATEGORIES[1], "plate to the left"),
+        (right, INDEX, INK, "ridges resolved"),
+    )
+    for ax, column, colour, label in curves:
+        ax.plot(resolved[EDGE], resolved[column], "o-", color=colour, ms=4, label=label)
+        for marker, (series, name) in zip("D^v", DRAWN.items(), strict=True):
+            rows = frame[frame["series"] == series]
+            look = {"mfc": "white", "mec": colour, "ms": 5, "ls": "none"}
+            ax.plot(rows[EDGE], rows[column], marker, label=name if ax is right else "", **look)
     for ax in (left, right):
-        ax.set(
-            xscale="log",
-            xlabel="element edge along the skin (µm)",
-            xticks=resolved[EDGE],
-            xlim=(58, 310),
-        )
-        ax.set_xticklabels([f"{e:.0f}" for e in resolved[EDGE]])
+        ax.set(xscale="log", xlabel="element edge along the skin (µm)", xlim=(58, 310))
+        ax.set_xticks(resolved[EDGE], [f"{edge:.0f}" for edge in resolved[EDGE]])
         ax.minorticks_off()
     left.set(ylim=(0, None), ylabel="strain energy density (Pa)", title="energy, both ways")
     right.set(ylim=(0, 0.6), ylabel="directional index", title="directional index")
     left.legend(loc="upper right", bbox_to_anchor=(1, 0.62))
-    right.legend(loc="lower left", title="thesis's elements below", title_fontsize=0.1)
-    right.get_legend().set_title("")
+    right.legend(loc="lower left")
     return fig
 
 
-@styled
-def outer(frame: pd.DataFrame) -> Figure:
-    """Islands of contact under outer ridges: pressure, number on the way, and the receptors' energy
-    both ways.
-    """
-    note = [
-        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm "
-        "high, 0.48 mm apart; islands of 3 to "
-        "5 loaded nodes: "
-        f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the "
-        "epidermis of the tip.",
-    ]
-    fig = study_figure("Ridges of the skin too: contact in islands", note, 5.0)
-    axes = fig.subplots(2, 2).ravel()
-
-    def part(panel: str, series: str) -> pd.DataFrame:
-        return frame[(frame["panel"] == panel) & (frame["series"] == series)]
-
-    for series, colour in {"pressed": GREY, "stroked by 50 mm": HIGHLIGHT}.items():
-        rows = part("pressure", series)
-        axes[0].plot(rows[X], rows[P] / 1e3, label=series, color=colour, lw=1.0)
-    axes[0].set(xlabel="x (mm)", ylabel="contact pressure (kPa)", title="contact pressure")
-    axes[0].set(xlim=(-4, 4), ylim=(0, 1.28 * frame[P].max() / 1e3))
-    axes[0].legend(loc="upper left", ncols=2)
-    coarser = {"color": GREY, "ls": (0, (3, 1.5)), "label": "coarser mesh"}
-    for series, look in {"simulated mesh": {"color": INK}, "companion": coarser}.items():
-        rows = part("islands", series)
-        if len(rows):
-            look = {"where": "post", "label": series} | look
-            axes[1].step(rows[DISTANCE], rows["islands (1)"], **look)
-    axes[1].set(ylabel="islands", title="number of islands", ylim=(0, None))
-    axes[1].yaxis.set_major_locator(MultipleLocator(2))
-    axes[1].legend(loc="lower right")
-    for ax, way in zip(axes[2:], ("right", "left"), strict=True):
-        for series, (colour, line) in RECEPTORS.items():
-            rows, label = part(way, series), f"x = {series}".replace("-", "−")
-            ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=label)
-        ax.set(title=f"plate to the {way}", ylim=(0, 1.05 * frame[SED].max()))
-    for ax in axes[1:]:
-        ax.set(xlabel="stroke distance (mm)", xlim=(0, 50))
-    axes[2].set_ylabel("strain energy density (Pa)")
-    axes[3].legend(loc="center right", bbox_to_anchor=(1.0, 0.52))
-    return fig
-
-
-RECEPTORS = {
-    "-46 µm": (HIGHLIGHT, "-"),
-    "0 µm": (INK, DASHED),
-    "46 µm": (CATEGORIES[1], (0, (1, 1.2))),
-}
-STUDIES = {"offset": offset, "height": height, "friction": friction, "mesh": mesh, "outer": outer}
+STUDIES = {"offset": offset, "height": height, "mesh": mesh}

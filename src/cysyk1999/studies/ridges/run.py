@@ -7,12 +7,12 @@ They are shorter than the scenes' strokes, what is asked for has settled by then
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH
 from cysyk1999.studies.common.ridges import boundary
@@ -46,8 +46,7 @@ GRID = tuple(
 """Depths and offsets of a map round a ridge, m."""
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """A short stroke: ridge height in um (0: the plain pad), coefficient of friction, name of the
     mesh.
     """
@@ -75,15 +74,14 @@ def tip_at_depth(outline: Outline, phase: float) -> float:
 
 def case_scene(base: Scene, case: Case) -> Scene:
     """The scene of a stroke with another height, coefficient, mesh and shorter way."""
-    drawn = AS_DRAWN.get(case.mesh)
-    edge = EDGES["thesis"] if drawn else EDGES[case.mesh]
-    outline = base.specimen.outline
-    phase = drawn[1] * edge if drawn else 0.0
-    ridges, tip = None, tip_at_depth(outline, phase)
+    edge, phase = EDGES.get(case.mesh, EDGES["thesis"]), 0.0
+    if case.mesh in AS_DRAWN:
+        phase = AS_DRAWN[case.mesh][1] * edge
+    outline, inner, ridges = base.specimen.outline, "specimen.ridges.inner", None
     if case.height:
-        inner = "specimen.ridges.inner"
         changes = {f"{inner}.height": case.height * 1e-6, f"{inner}.phase": phase or "tip"}
         ridges = base.varied(changes).specimen.ridges
+    tip = tip_at_depth(outline, phase)
     flank = boundary(outline, ridges, tip + FLANK)
     depths = {*GRID[0], DEPTH, round(flank - AWAY, 9), round(flank + AWAY, 9)}
     offsets = (round(tip + x, 9) for x in sorted({*GRID[1], -BESIDE, BESIDE}))
@@ -96,21 +94,9 @@ def case_scene(base: Scene, case: Case) -> Scene:
             "motion": (press, Slide(slide=-WAY, speed=slide.speed)),
             "outputs.receptors": Receptors(depths=tuple(sorted(depths)), offsets=tuple(offsets)),
             "accuracy": Discretisation(skin_edge=edge, steps=STEPS),
-            "effects": {"ridges": False} if drawn else {},
+            "effects": {"ridges": False} if case.mesh in AS_DRAWN else {},
         }
     )
-
-
-def run_case(base: Scene, case: Case) -> xr.Dataset:
-    """The history of a case, without labels. Raises what :func:`fingerpad.simulate` does."""
-    scene = case_scene(base, case)
-    chosen = plan(scene)
-    mesh = mesh_for(scene, chosen)
-    if case.mesh in AS_DRAWN:
-        mesh = ridges_drawn(
-            mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0]
-        )
-    return simulate(scene, chosen, mesh=mesh)
 
 
 def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool) -> PadMesh:
@@ -153,5 +139,13 @@ def _coordinates(curve: OutlineCurve, points: np.ndarray) -> tuple[np.ndarray, n
 
 def ridge_cases(job: SimpleNamespace) -> None:
     """Job: `scene` -> `histories`, whose folders name the cases."""
+    base = load_scene(job.scene[0])
     for history in map(Path, job.histories):
-        write_history(run_case(load_scene(job.scene[0]), Case.named(history.parent.name)), history)
+        case = Case.named(history.parent.name)
+        scene = case_scene(base, case)
+        chosen, specimen = plan(scene), scene.specimen
+        mesh = mesh_for(scene, chosen)
+        if case.mesh in AS_DRAWN:
+            straight, _ = AS_DRAWN[case.mesh]
+            mesh = ridges_drawn(mesh, specimen.outline, specimen.ridges, straight)
+        write_history(simulate(scene, chosen, mesh=mesh), history)

@@ -19,21 +19,24 @@ OF_TABLES = {"scorecard": "thesis_comparison", "candidate_stimuli": "candidate_s
 @part("views", in_default=True)
 def views(project: Project) -> Iterator[Job]:
     """Pictures of what happens inside, of scenes that the configuration has, and of tables."""
-    c = project.config
-    known, scenes = {*c.every_scene, *c.field_scenes}, {n: s for n, (_, s) in FRAMES.items()}
-    there = [name for name in scenes if known.issuperset(scenes[name])]
-    for called, strokes in (("views_of_presses", False), ("views_of_strokes", True)):
-        moves = {n: any(moves_along(project.scene(s)) for s in scenes[n]) for n in there}
-        if names := [name for name in there if moves[name] == strokes]:
-            needed = dict.fromkeys(scene for name in names for scene in scenes[name])
+    known = {*project.config.every_scene, *project.config.field_scenes}
+    jobs: dict[str, dict[str, tuple[str, ...]]] = {"views_of_presses": {}, "views_of_strokes": {}}
+    for picture, (_, scenes) in FRAMES.items():
+        if known.issuperset(scenes):
+            strokes = any(moves_along(project.scene(scene)) for scene in scenes)
+            jobs["views_of_strokes" if strokes else "views_of_presses"][picture] = scenes
+    for name, scenes_of in jobs.items():
+        if scenes_of:
+            needed = dict.fromkeys(scene for scenes in scenes_of.values() for scene in scenes)
             read = {"histories": [project.full_history(scene) for scene in needed]}
-            yield Job(draw_views, read, {"pictures": project.pictures(names)}, name=called)
-    if names := [name for name, table in OF_TABLES.items() if table in c.table_names]:
+            yield Job(draw_views, read, {"pictures": project.pictures(scenes_of)}, name=name)
+    tables = project.config.table_names
+    if pictures := [picture for picture, table in OF_TABLES.items() if table in tables]:
         read = {
-            "tables": project.tables(OF_TABLES[name] for name in names),
+            "tables": project.tables(OF_TABLES[picture] for picture in pictures),
             "reference": [project.at("config/reference/thesis_numbers.csv")],
         }
-        yield Job(table_pictures, read, {"pictures": project.pictures(names)})
+        yield Job(table_pictures, read, {"pictures": project.pictures(pictures)})
 
 
 @part("meanings", in_default=True)
