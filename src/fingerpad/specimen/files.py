@@ -109,8 +109,7 @@ def _check_names(names: Iterable[str], known: Iterable[str], what: str, kind: st
     for name in names:
         if name not in known:
             raise MeshError(
-                f"{what}{name} is no {kind} of the mesh; "
-                f"its physical {kind}s are {_listed(known)}"
+                f"{what}{name} is no {kind} of the mesh; its physical {kind}s are {_listed(known)}"
             )
 
 

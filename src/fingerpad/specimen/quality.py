@@ -14,11 +14,6 @@ from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
 
 
-def _corners(mesh: PadMesh) -> np.ndarray:
-    """Reference coordinates (corners, 2) of the corners of the elements."""
-    return KINDS[mesh.element].element.refdom.p.T
-
-
 def _sample_points(mesh: PadMesh) -> np.ndarray:
     """Gauss points (m, 2) of the reference element: 3 in triangles, 3 x 3 in quads."""
     kind = KINDS[mesh.element]
@@ -67,7 +62,8 @@ def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
     The determinant of the curved element's tangents over the product of their lengths; in a
     triangle over the largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
     """
-    tangents = jacobians(mesh, np.concatenate([_corners(mesh), _sample_points(mesh)]))
+    corners = KINDS[mesh.element].element.refdom.p.T
+    tangents = jacobians(mesh, np.concatenate([corners, _sample_points(mesh)]))
     lengths = np.hypot(tangents[..., 0], tangents[..., 1])
     scale = lengths[..., 0] * lengths[..., 1]
     if mesh.element.startswith("tri"):
@@ -96,10 +92,9 @@ def quality_table(meshes: Mapping[str, PadMesh]) -> pd.DataFrame:
     """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian
     (1).
     """
-    rows = [
+    table = pd.DataFrame(
         {"mesh": name, "element": mesh.element, **quality_of(mesh)} for name, mesh in meshes.items()
-    ]
-    table = pd.DataFrame(rows)
+    )
     table["smallest_edge_m"] *= 1e6
     names = {
         "smallest_edge_m": "smallest edge (um)",
