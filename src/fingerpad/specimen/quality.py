@@ -38,9 +38,9 @@ def counter_clockwise(mesh: PadMesh) -> PadMesh:
     return replace(mesh, cells=cells)
 
 
-def check_orientation(mesh: PadMesh, name: str = "") -> None:
+def check_orientation(mesh: PadMesh, name: str = "", advice: str = "") -> None:
     """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss
-    point.
+    point, and what would help.
     """
     points = np.concatenate([_sample_points(mesh), KINDS[mesh.element].rule(5)[0]])
     determinant = np.linalg.det(jacobians(mesh, points))
@@ -48,11 +48,12 @@ def check_orientation(mesh: PadMesh, name: str = "") -> None:
     if len(bad):
         what = "runs clockwise" if determinant[bad[0]].max() <= 0.0 else "is folded"
         x, y = mesh.points[mesh.cells[bad[0]]].mean(axis=0) * 1e3
-        message = (
-            f"element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} ({len(bad)} of {len(mesh.cells)}); "
-            "elements must be counter-clockwise with a positive Jacobian"
+        name, advice = name and f"{name}: ", advice and f"; {advice} are allowed"
+        raise MeshError(
+            f"{name}element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} "
+            f"({len(bad)} of {len(mesh.cells)}); elements must be counter-clockwise with a "
+            f"positive Jacobian{advice}"
         )
-        raise MeshError(f"{name}: {message}" if name else message)
 
 
 def scaled_jacobian(mesh: PadMesh) -> np.ndarray:

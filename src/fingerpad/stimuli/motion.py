@@ -653,9 +653,5 @@ def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarr
 
 
 def _between(before: Goal, after: Goal, share: float) -> Goal:
-    return Goal(
-        *(
-            None if b is None else b if a is None else a + share * (b - a)
-            for a, b in zip(before, after, strict=True)
-        )
-    )
+    ways = zip(before, after, strict=True)
+    return Goal(*(b if None in (a, b) else a + share * (b - a) for a, b in ways))
