@@ -89,7 +89,9 @@ def test_a_users_configuration_is_not_read(file, tmp_path):
         "assert ask('rectangle', 3, (2, 1, 1)).shape == (12, 9, 2)\n"
     )
     environment = os.environ | {"HOME": str(tmp_path), "GMSH_HOME": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script], env=environment, cwd=tmp_path, capture_output=True
+    )
     assert done.returncode == 0, done.stderr
 
 
