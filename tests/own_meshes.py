@@ -1,8 +1,12 @@
 """Small meshes as a user brings them: slabs of quads, with a skin and a base."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from fingerpad.specimen import PadMesh, write_pad
+from fingerpad.specimen import PadMesh, read_pad_mesh, write_pad
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.quality import jacobians
 
 
 def slab_mesh(edge, low=-10e-3, high=10e-3, left=-10e-3, right=10e-3, height=5e-3, y=None):
@@ -42,3 +46,37 @@ def SLAB(path):
         "outputs": {"receptors": {"depths": ["0.5 mm"], "offsets": ["1 mm"]}},
         "accuracy": {"skin_edge": "0.5 mm"},
     }
+
+
+def read_back(mesh, folder, **names):
+    """The mesh as it is read from its file."""
+    write_pad(mesh, folder / "own.msh")
+    return read_pad_mesh(folder / "own.msh", **names)
+
+
+def compact(mesh):
+    """The mesh without the nodes that no element uses."""
+    used = np.unique(mesh.cells)
+    number = np.full(len(mesh.points), -1, np.int32)
+    number[used] = np.arange(len(used))
+    curves = {name: number[facets] for name, facets in mesh.curves.items()}
+    return replace(mesh, points=mesh.points[used], cells=number[mesh.cells], curves=curves)
+
+
+def turned(mesh, degrees):
+    """The mesh turned about the origin."""
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return replace(mesh, points=mesh.points @ turn.T)
+
+
+def areas(mesh):
+    """Area of each layer by the Gauss rule of its elements."""
+    points, weights = KINDS[mesh.element].rule(5)
+    area = np.linalg.det(jacobians(mesh, points)) @ weights
+    return np.bincount(mesh.region, area, minlength=len(mesh.regions))
+
+
+def places(points):
+    """Points (n, 2), or rows of numbers, as a set."""
+    return set(map(tuple, points.tolist()))

@@ -16,11 +16,12 @@ from fingerpad.planning.plan import PlanError
 from fingerpad.planning.stack_estimate import StackEstimate
 from fingerpad.reference_solutions import layered, layered_contact
 from fingerpad.results import summary
-from fingerpad.specimen import MeshError, MeshSize, quality_of, read_pad_mesh, write_pad
+from fingerpad.specimen import MeshError, MeshSize, quality_of, write_pad
 from fingerpad.specimen.measures import below_skin, layers_below
 from fingerpad.specimen.stacks import build_stack_mesh
+from own_meshes import places, read_back
 from test_external_scenes import linear, linear_triangles, triangles
-from test_mesh import write_rings
+from test_mesh import renamed, write_rings
 
 pytestmark = pytest.mark.unit
 
@@ -33,14 +34,8 @@ PLATE, CYLINDER = {"shape": "flat"}, {"shape": "cylinder", "curvature": "30 1/m"
 
 
 def scene_of(folder, specimen, stimulus=CYLINDER, motion=({"press_to_depth": "0.2 mm"},), **keys):
-    document = {
-        "specimen": specimen,
-        "stimulus": stimulus,
-        "motion": list(motion),
-        "accuracy": COARSE,
-        **keys,
-    }
-    (folder / "scene.yaml").write_text(yaml.safe_dump(document))
+    document = {"specimen": specimen, "stimulus": stimulus, "motion": list(motion)}
+    (folder / "scene.yaml").write_text(yaml.safe_dump({**document, "accuracy": COARSE, **keys}))
     return load_scene(folder / "scene.yaml")
 
 
@@ -48,12 +43,13 @@ def last_leg(scene):
     return summary(simulate(scene))["legs"][-1]
 
 
-def stack(
-    names=("cover", "foam"), thicknesses=(1e-3, 4e-3), half_width=10e-3, radius=None, solid=False
-):
-    return SimpleNamespace(
-        names=names, thicknesses=thicknesses, half_width=half_width, radius=radius, solid=solid
-    )
+def stack(**given):
+    slab = {"names": ("cover", "foam"), "thicknesses": (1e-3, 4e-3), "half_width": 10e-3}
+    return SimpleNamespace(**slab | {"radius": None, "solid": False} | given)
+
+
+HALF_ROUND = {"radius": 8e-3, "half_width": 8e-3, "thicknesses": (1e-3, 3e-3)}
+SOLID = HALF_ROUND | {"thicknesses": (1e-3, 7e-3), "solid": True}
 
 
 # -- meshes of one's own -------------------------------------------------------------------------
@@ -61,53 +57,22 @@ def stack(
 SIZE = MeshSize(skin_edge=0.5e-3, fine_half_width=3e-3, layer_edge=0.4e-3, growth=1.5)
 
 
-def own(change=None, names=("cover", "foam"), shift=0.0, grade=None, **kwargs):
-    mesh = build_stack_mesh(stack(names, **kwargs), SIZE)
-    if grade:
-        x = mesh.points[:, 0]
-        mesh = replace(
-            mesh,
-            points=np.column_stack((x + grade * np.sin(np.pi * x / x.max()), mesh.points[:, 1])),
-        )
-    made = change(mesh) if change else mesh
-    points = made.points + [shift, 0.0]
-    return replace(made, points=points, regions=mesh.regions, fixed=mesh.fixed, symmetric=False)
+def own(change=None, shift=0.0, grade=0.0, **given):
+    """A slab or half-round as a mesh: graded by so many m, of other elements, shifted by so many
+    m.
+    """
+    mesh = build_stack_mesh(stack(**given), SIZE)
+    x = mesh.points[:, :1]
+    mesh = replace(mesh, points=mesh.points + grade * np.sin(np.pi * x / x.max()) * [1, 0])
+    mesh = change(mesh) if change else mesh
+    return replace(mesh, points=mesh.points + [shift, 0.0], symmetric=False)
 
 
-def five():
-    return own(names=tuple("abcde"), thicknesses=(0.5e-3, 0.5e-3, 1e-3, 1e-3, 2e-3))
+FIVE = {"names": tuple("abcde"), "thicknesses": (0.5e-3, 0.5e-3, 1e-3, 1e-3, 2e-3)}
 
 
-VARIANTS = {
-    "quad9": lambda: own(),
-    "quad4": lambda: own(linear),
-    "tri6": lambda: own(triangles),
-    "tri3": lambda: own(linear_triangles),
-    "graded quad9": lambda: own(grade=0.8e-3),
-    "graded quad4": lambda: own(linear, grade=0.8e-3),
-    "graded tri6": lambda: own(triangles, grade=-0.5e-3),
-    "graded tri3": lambda: own(linear_triangles, grade=-0.5e-3),
-    "off by 0.01 mm, quad9": lambda: own(shift=1e-5),
-    "off by 0.3 mm, quad9": lambda: own(shift=3e-4),
-    "off by 0.01 mm, tri6": lambda: own(triangles, shift=1e-5),
-    "off by 0.3 mm, tri3": lambda: own(linear_triangles, shift=-3e-4),
-    "off by 0.3 mm, quad4": lambda: own(linear, shift=3e-4),
-    "one layer of one's own": lambda: own(names=("cover",), thicknesses=(5e-3,)),
-    "five layers": five,
-    "five layers, tri6": lambda: (
-        lambda mesh: replace(triangles(mesh), regions=mesh.regions, fixed=mesh.fixed)
-    )(five()),
-    "half-round, quad9": lambda: own(
-        radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True
-    ),
-    "half-round, tri3": lambda: own(
-        linear_triangles, radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 3e-3)
-    ),
-    "part of the top is skin": lambda: (
-        lambda mesh: replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][3:-3]})
-    )(own()),
-    "skin goes round the corners": lambda: around(own()),
-}
+def partly(mesh):
+    return replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][3:-3]})
 
 
 def around(mesh):
@@ -116,10 +81,39 @@ def around(mesh):
     return replace(mesh, curves={"skin": skin, "base": mesh.curves["base"]})
 
 
-def material(name):
-    return {
-        key: (FOAM if name == "foam" else COVER)[key] for key in ("youngs_modulus", "poisson_ratio")
-    }
+VARIANTS = {
+    "quad9": {},
+    "quad4": {"change": linear},
+    "tri6": {"change": triangles},
+    "tri3": {"change": linear_triangles},
+    "graded quad9": {"grade": 0.8e-3},
+    "graded quad4": {"change": linear, "grade": 0.8e-3},
+    "graded tri6": {"change": triangles, "grade": -0.5e-3},
+    "graded tri3": {"change": linear_triangles, "grade": -0.5e-3},
+    "off by 0.01 mm, quad9": {"shift": 1e-5},
+    "off by 0.3 mm, quad9": {"shift": 3e-4},
+    "off by 0.01 mm, tri6": {"change": triangles, "shift": 1e-5},
+    "off by 0.3 mm, tri3": {"change": linear_triangles, "shift": -3e-4},
+    "off by 0.3 mm, quad4": {"change": linear, "shift": 3e-4},
+    "one layer of one's own": {"names": ("cover",), "thicknesses": (5e-3,)},
+    "five layers": FIVE,
+    "five layers, tri6": {"change": triangles, **FIVE},
+    "half-round, quad9": SOLID,
+    "half-round, tri3": {"change": linear_triangles, **HALF_ROUND},
+    "part of the top is skin": {"change": partly},
+    "skin goes round the corners": {"change": around},
+}
+
+
+def layers_of(*names):
+    keys = "youngs_modulus", "poisson_ratio"
+    return {name: {key: (FOAM if name == "foam" else COVER)[key] for key in keys} for name in names}
+
+
+def own_specimen(folder, mesh, fixed=("base",), **keys):
+    write_pad(mesh, folder / "own.msh")
+    layers = layers_of(*mesh.regions)
+    return {"mesh": "own.msh", "layers": layers, "fixed": list(fixed), **keys}
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -127,19 +121,14 @@ def test_meshes_of_one_s_own(name, tmp_path):
     """Every one is read, planned and pressed; those of the same slab agree within 3 % (frozen:
     9-node quads).
     """
-    mesh = VARIANTS[name]()
-    write_pad(mesh, tmp_path / "own.msh")
-    layers = {region: material(region) for region in mesh.regions}
-    scene = scene_of(
-        tmp_path,
-        {"mesh": "own.msh", "layers": layers, "fixed": ["base"], "contact_length": "10 mm"},
-    )
+    mesh = own(**VARIANTS[name])
+    scene = scene_of(tmp_path, own_specimen(tmp_path, mesh, contact_length="10 mm"))
     chosen = plan(scene)
     assert scene.specimen.assumed == ("prony: none, elastic",)
-    assert chosen.specimen[0].startswith(f"a mesh of {mesh.element.replace('tri3', 'tri6')}, ")
-    assert "; held: base; free: skin" in chosen.specimen[0] and (
-        "boundary edges" in chosen.specimen[0]
-    ) == ("sides" in mesh.curves)
+    said = chosen.specimen[0]
+    assert said.startswith(f"a mesh of {mesh.element.replace('tri3', 'tri6')}, ")
+    assert "; held: base; free: skin" in said
+    assert ("boundary edges" in said) == ("sides" in mesh.curves)
     leg = last_leg(scene)
     assert leg["depth_mm"] == pytest.approx(0.2) and leg["force_N_per_m"] > 0
     assert 0.4 < chosen.contact.half_width / (leg["contact_width_mm"] / 2e3) < 2.5
@@ -148,42 +137,30 @@ def test_meshes_of_one_s_own(name, tmp_path):
 
 
 def test_a_mesh_without_nail_and_with_eight_node_quads(tmp_path):
-    path = write_rings(
-        tmp_path / "rings.msh",
-        "quad8",
-        edit=lambda groups: [group for group in groups if group[2] != "nail"],
-    )
+    path = write_rings(tmp_path / "rings.msh", "quad8", edit=renamed(nail=None))
     scene = scene_of(tmp_path, {"mesh": path.name})
-    assert (
-        plan(scene)
-        .specimen[0]
-        .endswith("held: bone; free: skin, 12 boundary edges in none of these curves")
-    )
-    assert plan(scene).specimen[2] == "not given: layers, prony, contact_length: thesis"
+    said = plan(scene).specimen
+    assert said[0].endswith("held: bone; free: skin, 12 boundary edges in none of these curves")
+    assert said[2] == "not given: layers, prony, contact_length: thesis"
     assert last_leg(scene)["force_N_per_m"] > 0
 
 
+BOTH = layers_of("cover", "foam")
 WRONG = {
     "surface without a material": (
-        {"layers": {"cover": material("cover")}, "fixed": ["base"]},
-        "26",
+        {"layers": layers_of("cover")},
+        "surface elements are in none of cover; each must be in one (the mesh also has foam)",
     ),
     "layer that is no surface": (
-        {"layers": {"cover": material("cover"), "gel": material("foam")}, "fixed": ["base"]},
+        {"layers": layers_of("cover", "gel")},
         "layer gel is no surface of the mesh; its physical surfaces are cover, foam",
     ),
     "no materials at all": (
-        {"fixed": ["base"]},
+        {},
         "no material for cover, foam; specimen.layers must name each surface",
     ),
-    "nothing held": (
-        {"layers": {"cover": material("cover"), "foam": material("foam")}, "free": ["base"]},
-        "no curve is held",
-    ),
-    "no such curve": (
-        {"layers": {"cover": material("cover"), "foam": material("foam")}, "fixed": ["bas"]},
-        "physical curves are",
-    ),
+    "nothing held": ({"layers": BOTH, "fixed": [], "free": ["base"]}, "no curve is held"),
+    "no such curve": ({"layers": BOTH, "fixed": ["bas"]}, "physical curves are"),
 }
 
 
@@ -191,22 +168,16 @@ WRONG = {
 def test_names_are_checked_both_ways(name, tmp_path):
     write_pad(own(), tmp_path / "own.msh")
     specimen, words = WRONG[name]
-    if name == "surface without a material":
-        words = (
-            "surface elements are in none of cover; each must be in one (the mesh also has foam)"
-        )
     with pytest.raises(MeshError) as caught:
-        plan(scene_of(tmp_path, {"mesh": "own.msh", **specimen}))
+        plan(scene_of(tmp_path, {"mesh": "own.msh", "fixed": ["base"], **specimen}))
     assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_a_finger_s_layer_that_the_mesh_has_not(tmp_path):
     path = write_rings(tmp_path / "rings.msh", "tri3")
-    scene = scene_of(
-        tmp_path, {"mesh": path.name, "layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}}
-    )
+    specimen = {"mesh": path.name, "layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}}
     with pytest.raises(MeshError, match="layer stratum_corneum is no surface of the mesh"):
-        plan(scene)
+        plan(scene_of(tmp_path, specimen))
 
 
 # -- slabs and half-rounds of a scene ------------------------------------------------------------
@@ -225,19 +196,20 @@ def test_a_slab_says_what_was_not_given(tmp_path):
     assert scene.specimen.prony == () and scene.specimen.materials["foam"].youngs_modulus == 50e3
 
 
+def slab(*layers, width="9 mm"):
+    return {"slab": {"width": width, "layers": list(layers)}}
+
+
 NO_SLAB = {
     "no modulus": (
-        {"slab": {"width": "9 mm", "layers": [{"name": "a", "thickness": "1 mm"}]}},
+        slab({"name": "a", "thickness": "1 mm"}),
         "layers[0].youngs_modulus: is missing",
     ),
     "no thickness": (
-        {"slab": {"width": "9 mm", "layers": [{"name": "a", "youngs_modulus": "1 Pa"}]}},
+        slab({"name": "a", "youngs_modulus": "1 Pa"}),
         "layers[0].thickness: is miss",
     ),
-    "twice one name": (
-        {"slab": {"width": "9 mm", "layers": [COVER, COVER]}},
-        "is the name of two layers",
-    ),
+    "twice one name": (slab(COVER, COVER), "is the name of two layers"),
     "layers beside it": ({**SLAB, "layers": "thesis"}, "specimen.layers: is given beside a slab"),
     "too thick": (
         {"half_round": {"radius": "4 mm", "layers": [COVER, FOAM]}},
@@ -246,11 +218,8 @@ NO_SLAB = {
     "two shapes": ({**SLAB, "outline": "thesis"}, "one of outline and slab"),
     "curves of no mesh": ({**SLAB, "fixed": ["base"]}, "names curves of no mesh"),
     "ridges": ({**SLAB, "ridges": "inner"}, "specimen.ridges: is given beside a slab"),
-    "no layers": ({"slab": {"width": "9 mm", "layers": []}}, "is empty"),
-    "deeper than it is thick": (
-        {"slab": {"width": "9 mm", "layers": [{**COVER, "thickness": "0.2 mm"}]}},
-        "presses to the base",
-    ),
+    "no layers": (slab(), "is empty"),
+    "deeper than it is thick": (slab({**COVER, "thickness": "0.2 mm"}), "presses to the base"),
 }
 
 
@@ -259,44 +228,36 @@ def test_wrong_slabs_are_one_line(name, tmp_path):
     specimen, words = NO_SLAB[name]
     with pytest.raises(SceneError) as caught:
         scene_of(tmp_path, specimen)
-    assert words in str(caught.value) and len(str(caught.value).splitlines()) == 1
+    assert words in str(caught.value) and "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("solid", [True, False])
-def test_a_half_round_is_a_half_round(solid):
-    made = stack(
-        radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3 if solid else 3e-3), solid=solid
-    )
-    mesh = build_stack_mesh(made, SIZE)
-    assert (
-        quality_of(mesh)["worst_scaled_jacobian"] > 0.5
-        and mesh.symmetric
-        and mesh.fixed == ("base",)
-    )
+@pytest.mark.parametrize("given", [SOLID, HALF_ROUND])
+def test_a_half_round_is_a_half_round(given):
+    mesh = build_stack_mesh(stack(**given), SIZE)
+    assert quality_of(mesh)["worst_scaled_jacobian"] > 0.5
+    assert mesh.symmetric and mesh.fixed == ("base",)
     radius = np.hypot(*mesh.points[np.unique(mesh.curves["skin"])].T)
     np.testing.assert_allclose(radius, 8e-3, rtol=1e-12)
     base = mesh.points[np.unique(mesh.curves["base"])]
     on_base = np.isclose(base[:, 1], 0.0, atol=1e-12) | np.isclose(np.hypot(*base.T), 4e-3)
-    assert on_base.all() and len({tuple(point) for point in mesh.points}) == len(mesh.points)
-    assert layers_below(mesh) == [
-        ("cover", pytest.approx(1e-3)),
-        ("foam", pytest.approx(7e-3 if solid else 3e-3)),
+    assert on_base.all() and len(places(mesh.points)) == len(mesh.points)
+    thick = [
+        (name, pytest.approx(deep))
+        for name, deep in zip(mesh.regions, given["thicknesses"], strict=True)
     ]
+    assert layers_below(mesh) == thick
 
 
 def test_receptors_below_a_steep_skin_are_as_deep_along_its_normal():
     """On a half-round their distance from its middle is known; the skin that is nearest to them is
     well aside.
     """
-    mesh = build_stack_mesh(
-        stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True), SIZE
-    )
+    mesh = build_stack_mesh(stack(**SOLID), SIZE)
     depth, offset = np.array([0.3e-3, 1e-3, 1e-3, 2e-3]), np.array([5e-3, -5e-3, 0.0, 4e-3])
     found = below_skin(mesh, depth, offset)
     np.testing.assert_array_equal(found[:, 0], offset)
-    np.testing.assert_allclose(
-        np.hypot(*found.T), 8e-3 - depth, rtol=0, atol=4e-6
-    )  # between points of the skin
+    # between points of the skin
+    np.testing.assert_allclose(np.hypot(*found.T), 8e-3 - depth, rtol=0, atol=4e-6)
 
 
 def test_receptors_below_a_flat_and_a_partial_skin():
@@ -307,34 +268,24 @@ def test_receptors_below_a_flat_and_a_partial_skin():
     )
     partial = replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][8:-8]})
     end = np.abs(partial.points[partial.curves["skin"], 0]).max()
-    with pytest.raises(
-        MeshError, match=r"there is no skin over x = 9.8 mm; allowed: offsets from -.* mm to .* mm"
-    ):
+    said = r"there is no skin over x = 9.8 mm; allowed: offsets from -.* mm to .* mm"
+    with pytest.raises(MeshError, match=said):
         below_skin(partial, 1e-3, [9.8e-3])
     assert below_skin(partial, 1e-3, [0.9 * end])[0, 1] == pytest.approx(-1e-3, rel=1e-3)
 
 
 def test_a_plate_on_held_ends_is_refused(tmp_path):
-    write_pad(own(), tmp_path / "own.msh")
-    layers = {name: material(name) for name in ("cover", "foam")}
-    scene = scene_of(
-        tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]}, PLATE
-    )
-    with pytest.raises(
-        PlanError, match="comes down on the end of the skin at x = .*10 mm, which is held"
-    ):
-        simulate(scene)
-    assert (
-        last_leg(
-            scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]})
-        )["force_N_per_m"]
-        > 0
-    )
+    held = own_specimen(tmp_path, own(), ("base", "sides"))
+    said = "comes down on the end of the skin at x = .*10 mm, which is held"
+    with pytest.raises(PlanError, match=said):
+        simulate(scene_of(tmp_path, held, PLATE))
+    assert last_leg(scene_of(tmp_path, held))["force_N_per_m"] > 0
 
 
 # -- against truth -------------------------------------------------------------------------------
 
 SMALL = {"finite_strain": "off"}
+BONDED = [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)]
 
 
 @pytest.mark.verification
@@ -346,13 +297,10 @@ def test_a_plate_on_a_bonded_stack(control, tmp_path):
     Wide against the length over which a stretched cover is held by the foam, sqrt(E h_cover h_foam
     / mu) = 10 mm.
     """
-    wide = {**SLAB, "slab": {"width": "120 mm", "layers": [COVER, FOAM]}}
+    wide = slab(COVER, FOAM, width="120 mm") | {"contact_length": "10 mm"}
     motion = [{"press_to_depth": "0.1 mm"}] if control == "depth" else [{"press_to_force": "60 gf"}]
     scene = scene_of(tmp_path, wide, PLATE, motion, effects=SMALL)
-    leg = last_leg(scene)
-    confined = layered.stack_compliance(
-        0.0, [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)]
-    )
+    leg, confined = last_leg(scene), layered.stack_compliance(0.0, BONDED)
     assert leg["centre_pressure_Pa"] == pytest.approx(leg["depth_mm"] * 1e-3 / confined, rel=2e-3)
     assert leg["contact_width_mm"] == pytest.approx(120.0, rel=2e-3)
     if control == "force":
@@ -366,39 +314,28 @@ def test_a_cylinder_on_a_bonded_stack(tmp_path):
     and the planner against it.
     """
     radius, force = 20e-3, 20 * 9.80665e-3 / 0.01
-    layers = [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)]
-    truth = layered_contact.press(lambda x: x**2 / (2 * radius), layers, 15e-3, force, 512)
-    specimen = {**SLAB, "slab": {"width": "30 mm", "layers": [COVER, FOAM]}}
+    truth = layered_contact.press(lambda x: x**2 / (2 * radius), BONDED, 15e-3, force, 512)
+    specimen = slab(COVER, FOAM, width="30 mm") | {"contact_length": "10 mm"}
     stimulus, motion = {"shape": "cylinder", "curvature": "50 1/m"}, [{"press_to_force": "20 gf"}]
-    scene = scene_of(
-        tmp_path,
-        specimen,
-        stimulus,
-        motion,
-        effects=SMALL,
-        accuracy={"skin_edge": "0.2 mm", "steps": 2},
-    )
+    accuracy = {"skin_edge": "0.2 mm", "steps": 2}
+    scene = scene_of(tmp_path, specimen, stimulus, motion, effects=SMALL, accuracy=accuracy)
     leg, estimate = last_leg(scene), plan(scene).contact
     assert leg["depth_mm"] == pytest.approx(truth.depth * 1e3, rel=0.01)
     assert leg["centre_pressure_Pa"] == pytest.approx(truth.pressure[0], rel=0.02)
     assert leg["contact_width_mm"] == pytest.approx(2e3 * truth.half_width, rel=0.03)
-    assert estimate.depth == pytest.approx(
-        truth.depth, rel=0.05
-    ) and estimate.half_width == pytest.approx(truth.half_width, rel=0.2)
+    assert estimate.depth == pytest.approx(truth.depth, rel=0.05)
+    assert estimate.half_width == pytest.approx(truth.half_width, rel=0.2)
 
 
 def test_a_plate_slides_over_a_slab_with_friction(tmp_path):
     """Once all of it slips the lateral force is the coefficient times the normal one."""
     motion = [{"press_to_force": "20 gf"}, {"slide": "2 mm"}]
-    history = simulate(
-        scene_of(
-            tmp_path, SLAB, PLATE, motion, friction=0.3, accuracy={"skin_edge": "1 mm", "steps": 8}
-        )
-    )
-    assert (history.contact_state[-1].values == 2).all()
-    assert abs(float(history.tangential_force[-1])) == pytest.approx(
-        0.3 * float(history.force[-1]), rel=1e-3
-    )
+    accuracy = {"skin_edge": "1 mm", "steps": 8}
+    scene = scene_of(tmp_path, SLAB, PLATE, motion, friction=0.3, accuracy=accuracy)
+    history = simulate(scene).isel(time=-1)
+    assert (history.contact_state.values == 2).all()
+    lateral = abs(float(history.tangential_force))
+    assert lateral == pytest.approx(0.3 * float(history.force), rel=1e-3)
 
 
 @pytest.mark.parametrize("thicknesses", [(5e-3,), (1e-3, 4e-3), (0.2e-3, 5e-3)])
@@ -414,15 +351,11 @@ def test_the_estimate_of_a_stack(thicknesses, radius):
     found = estimate.pressed(10.0, 1 / radius)
     assert found.depth == pytest.approx(truth.depth, rel=0.05)
     assert found.half_width == pytest.approx(truth.half_width, rel=0.33)
-    assert estimate.pressed_to(found.depth, 1 / radius).half_width == pytest.approx(
-        found.half_width, rel=1e-3
-    )
+    again = estimate.pressed_to(found.depth, 1 / radius)
+    assert again.half_width == pytest.approx(found.half_width, rel=1e-3)
     plate = estimate.pressed(10.0, 0.0)
-    assert (
-        plate.half_width == 20e-3
-        and 0 < plate.depth < found.depth
-        and estimate.pressed_to(1e-3, 0.0).half_width == 20e-3
-    )
+    assert plate.half_width == estimate.pressed_to(1e-3, 0.0).half_width == 20e-3
+    assert 0 < plate.depth < found.depth
 
 
 def test_the_robot_s_skin_runs():
@@ -432,8 +365,7 @@ def test_the_robot_s_skin_runs():
 
 def test_a_written_slab_is_read_again(tmp_path):
     mesh = own()
-    write_pad(mesh, tmp_path / "slab.msh")
-    again = read_pad_mesh(tmp_path / "slab.msh")
+    again = read_back(mesh, tmp_path)
     assert again.regions == mesh.regions and again.fixed == mesh.fixed and again.symmetric
     np.testing.assert_allclose(again.points, mesh.points, rtol=0, atol=1e-15)
     np.testing.assert_array_equal(again.cells, mesh.cells)
@@ -442,8 +374,6 @@ def test_a_written_slab_is_read_again(tmp_path):
 def test_a_thin_epidermis_needs_no_stratum_corneum(tmp_path):
     """The thesis's stratum corneum is thicker, and no layer of this pad."""
     scene = scene_of(tmp_path, {"outline": {"epidermis_thickness": "0.3 mm"}})
-    assert (
-        scene.specimen.outline.stratum_corneum_thickness
-        > scene.specimen.outline.epidermis_thickness
-    )
+    outline = scene.specimen.outline
+    assert outline.stratum_corneum_thickness > outline.epidermis_thickness
     assert plan(scene).nodes > 0

@@ -17,9 +17,8 @@ RAMP_AND_HOLD = np.interp(TIME, [0, 0.5, 2.5], [0, 20, 20])
 
 
 def written(folder, *columns, header="time (s),force (gf)", name="motion.csv", delimiter=","):
-    np.savetxt(
-        folder / name, np.column_stack(columns), delimiter=delimiter, header=header, comments=""
-    )
+    rows = np.column_stack(columns)
+    np.savetxt(folder / name, rows, delimiter=delimiter, header=header, comments="")
     return {"table": str(folder / name)}
 
 
@@ -109,11 +108,8 @@ def test_what_is_no_motion_is_refused_in_one_line(tmp_path, name):
     (tmp_path / "motion.csv").write_text(content)
     with pytest.raises(SceneError) as caught:
         scene({"table": str(tmp_path / "motion.csv")})
-    assert (
-        words in str(caught.value)
-        and "motion[0].table" in str(caught.value)
-        and "\n" not in str(caught.value)
-    )
+    said = str(caught.value)
+    assert words in said and "motion[0].table" in said and "\n" not in said
 
 
 def test_files_that_are_not_there(tmp_path):

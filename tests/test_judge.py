@@ -6,43 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 
 import fingerpad
 from fingerpad.cli import main
-from fingerpad.specimen import MeshError, PadMesh, read_pad_mesh, write_pad
-from own_meshes import SLAB, slab_mesh
+from fingerpad.specimen import MeshError, write_pad
+from own_meshes import SLAB, compact, read_back, slab_mesh, turned
 
 pytestmark = pytest.mark.unit
 
 EDGE = 1e-3
 
 
-def joined(*parts, names=("lower", "upper"), skin="upper"):
-    """Meshes side by side as one, without common nodes: base of the first, skin of the last."""
-    points, cells, region, shift = [], [], [], 0
-    curves = {}
-    for number, part in enumerate(parts):
-        points.append(part.points)
-        cells.append(part.cells + shift)
-        region.append(np.full(len(part.cells), number, np.int8))
-        wanted = ("base",) if number == 0 else ("skin",) if number == len(parts) - 1 else ()
-        curves |= {name: part.curves[name] + shift for name in wanted}
-        shift += len(part.points)
-    return PadMesh(
-        np.concatenate(points),
-        np.concatenate(cells),
-        "quad4",
-        np.concatenate(region),
-        curves,
-        False,
-        regions=names[: len(parts)],
-        fixed=("base",),
+def joined(lower, upper):
+    """Two meshes as one, without common nodes: base of the first, skin of the second."""
+    shift = len(lower.points)
+    return replace(
+        lower,
+        points=np.concatenate([lower.points, upper.points]),
+        cells=np.concatenate([lower.cells, upper.cells + shift]),
+        region=np.repeat([0, 1], [len(lower.cells), len(upper.cells)]).astype(np.int8),
+        curves={"skin": upper.curves["skin"] + shift, "base": lower.curves["base"]},
+        regions=("lower", "upper"),
     )
 
 
-def merged(mesh, tolerance=1e-9):
+def merged(mesh):
     """Nodes at one place made one."""
-    keys = np.round(mesh.points / tolerance).astype(np.int64)
+    keys = np.round(mesh.points / 1e-9).astype(np.int64)
     _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     number = number.reshape(-1).astype(np.int32)
     curves = {name: number[facets] for name, facets in mesh.curves.items()}
@@ -51,6 +42,10 @@ def merged(mesh, tolerance=1e-9):
 
 def lifted(mesh, height):
     return replace(mesh, points=mesh.points + [0.0, height])
+
+
+def shifted(mesh, way):
+    return replace(mesh, points=mesh.points + [way, 0.0])
 
 
 def layers(lower=EDGE, upper=EDGE, apart=0.0):
@@ -81,52 +76,36 @@ def partly():
 
 def by_one_node():
     """A slab and a block on it that share a corner."""
+    low = slab_mesh(EDGE)
     block = lifted(slab_mesh(EDGE, low=-1, left=10e-3, right=14e-3, height=2e-3), 5e-3)
-    low = replace(slab_mesh(EDGE), regions=("lower",))
-    whole = merged(joined(low, block, names=("lower", "upper")))
-    top = low.curves["skin"]
-    skin = np.array(
-        [[_at(whole, low.points[a]), _at(whole, low.points[b])] for a, b in top], np.int32
-    )
-    return replace(whole, curves={"skin": skin, "base": whole.curves["base"]})
-
-
-def _at(mesh, point):
-    return int(np.argmin(np.hypot(*(mesh.points - point).T)))
+    whole = joined(low, block)
+    return merged(replace(whole, curves=low.curves))
 
 
 def slit():
     """Layers that are joined at both ends and part in between by a twentieth of an edge."""
     mesh = layers()
-    points = mesh.points.copy()
-    inside = (np.abs(points[:, 1] - 3e-3) < 1e-9) & (np.abs(points[:, 0]) < 4.5e-3)
-    inside[: len(points) // 2] = False
-    upper = np.arange(len(points)) >= len(slab_mesh(EDGE, height=3e-3).points)
-    points[inside & upper, 1] += 0.02e-3
-    return merged(replace(mesh, points=points))
+    x, y = mesh.points.T
+    upper = np.arange(len(x)) >= len(slab_mesh(EDGE, height=3e-3).points)
+    apart = upper & (np.abs(y - 3e-3) < 1e-9) & (np.abs(x) < 4.5e-3)
+    return merged(replace(mesh, points=mesh.points + 0.02e-3 * apart[:, None] * [0, 1]))
 
 
 def crossing():
     """A body bent into itself: two arms on one base that overlap."""
     mesh = slab_mesh(EDGE, height=5e-3)
-    kept = np.abs(mesh.points[mesh.cells, 0].mean(axis=1)) > 1e-3
-    low = mesh.points[mesh.cells, 1].mean(axis=1) < 1e-3
-    cells = mesh.cells[kept | low]
+    middle = mesh.points[mesh.cells].mean(axis=1)
+    kept = (np.abs(middle[:, 0]) > 1e-3) | (middle[:, 1] < 1e-3)
     x, y = mesh.points.T
     points = np.column_stack([np.where(y > 1e-3, x - np.sign(x) * 0.6 * (y - 1e-3), x), y])
     skin = mesh.curves["skin"]
-    skin = skin[mesh.points[skin, 0].mean(axis=1) < -1e-3]
-    used = np.unique(cells)
-    number = np.full(len(points), -1, np.int32)
-    number[used] = np.arange(len(used))
-    curves = {"skin": number[skin], "base": number[mesh.curves["base"]]}
-    return replace(
-        mesh,
-        points=points[used],
-        cells=number[cells],
-        region=np.zeros(len(cells), np.int8),
-        curves=curves,
-    )
+    skin = skin[x[skin].mean(axis=1) < -1e-3]
+    return cut_out(replace(mesh, points=points, curves=mesh.curves | {"skin": skin}), kept)
+
+
+def cut_out(mesh, kept):
+    """The chosen elements of a mesh."""
+    return compact(replace(mesh, cells=mesh.cells[kept], region=mesh.region[kept]))
 
 
 NOT_JOINED = {
@@ -148,22 +127,20 @@ NOT_JOINED = {
 def test_parts_that_do_not_share_their_nodes_are_refused(tmp_path, name, raised):
     make, words = NOT_JOINED[name]
     mesh = make()
-    write_pad(mesh.raised() if raised else mesh, tmp_path / "m.msh")
+    said = refused(mesh.raised() if raised else mesh, tmp_path)
+    assert words in said and " mm" in said and "layers" in said
+
+
+def refused(mesh, folder):
+    """What is said of a mesh, in one line."""
     with pytest.raises(MeshError) as caught:
-        read_pad_mesh(tmp_path / "m.msh")
-    said = str(caught.value)
-    assert words in said and " mm" in said and "\n" not in said and ("layers" in said)
+        read_back(mesh, folder)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
 
 
 def test_layers_that_share_their_nodes_are_taken(tmp_path):
-    write_pad(merged(layers()), tmp_path / "m.msh")
-    assert read_pad_mesh(tmp_path / "m.msh").regions == ("lower", "upper")
-
-
-def turned(mesh, degrees):
-    angle = np.radians(degrees)
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return replace(mesh, points=mesh.points @ turn.T)
+    assert read_back(merged(layers()), tmp_path).regions == ("lower", "upper")
 
 
 def covered():
@@ -173,33 +150,17 @@ def covered():
     kept = ~((np.abs(x) < 3e-3) & (y > 2e-3) & (y < 4e-3))
     number = np.arange(len(mesh.points)).reshape(21, 6)
     skin = np.column_stack([number[7:13, 2], number[8:14, 2]]).astype(np.int32)
-    used = np.unique(mesh.cells[kept])
-    new = np.full(len(mesh.points), -1, np.int32)
-    new[used] = np.arange(len(used))
-    curves = {"skin": new[skin], "base": new[mesh.curves["base"]]}
-    return replace(
-        mesh,
-        points=mesh.points[used],
-        cells=new[mesh.cells[kept]],
-        region=mesh.region[kept],
-        curves=curves,
-    )
+    return cut_out(replace(mesh, curves=mesh.curves | {"skin": skin}), kept)
 
 
 WRONG_SKIN = {
-    "right of x = 0": (
-        lambda: slab_mesh(EDGE, left=2e-3, right=22e-3, low=2e-3, high=22e-3),
-        "shifted by -12 mm",
-    ),
-    "left of x = 0": (
-        lambda: slab_mesh(EDGE, left=-22e-3, right=-2e-3, low=-22e-3, high=-2e-3),
-        "shifted by 12 mm",
-    ),
+    "right of x = 0": (lambda: shifted(slab_mesh(EDGE), 12e-3), "shifted by -12 mm"),
+    "left of x = 0": (lambda: shifted(slab_mesh(EDGE), -12e-3), "shifted by 12 mm"),
     "turned by 180 degrees": (lambda: turned(slab_mesh(EDGE), 180), "faces down"),
     "turned by 90 degrees": (lambda: turned(slab_mesh(EDGE), 90), "faces left"),
     "turned by -90 degrees": (lambda: turned(slab_mesh(EDGE), -90), "faces right"),
     "turned by 90 degrees, over x = 0": (
-        lambda: (lambda m: replace(m, points=m.points + [5e-3, 0]))(turned(slab_mesh(EDGE), 90)),
+        lambda: shifted(turned(slab_mesh(EDGE), 90), 5e-3),
         "faces left",
     ),
     "below another part": (covered, "is covered at x = 0 by curve unnamed"),
@@ -209,32 +170,20 @@ WRONG_SKIN = {
 @pytest.mark.parametrize("name", WRONG_SKIN)
 def test_a_skin_that_the_indenter_does_not_meet_is_refused(tmp_path, name):
     make, words = WRONG_SKIN[name]
-    write_pad(make(), tmp_path / "m.msh")
-    with pytest.raises(MeshError) as caught:
-        read_pad_mesh(tmp_path / "m.msh")
-    said = str(caught.value)
-    assert (
-        words in said
-        and "curve skin, from x = " in said
-        and "allowed: " in said
-        and "\n" not in said
-    )
+    said = refused(make(), tmp_path)
+    assert words in said and "curve skin, from x = " in said and "allowed: " in said
 
 
 @pytest.mark.parametrize("degrees", [0, 10, -20])
 def test_a_tilted_skin_is_taken(tmp_path, degrees):
-    write_pad(turned(slab_mesh(EDGE), degrees), tmp_path / "m.msh")
-    read_pad_mesh(tmp_path / "m.msh")
+    read_back(turned(slab_mesh(EDGE), degrees), tmp_path)
 
 
 def test_the_command_line_says_it_in_one_line(tmp_path, capsys):
     write_pad(layers(EDGE, EDGE * 0.8), tmp_path / "m.msh")
     document = SLAB(tmp_path / "m.msh")
-    document["specimen"]["layers"] = {
-        name: {"youngs_modulus": "50 kPa"} for name in ("lower", "upper")
-    }
-    import yaml
-
+    soft = {"youngs_modulus": "50 kPa"}
+    document["specimen"]["layers"] = {"lower": soft, "upper": soft}
     (tmp_path / "scene.yaml").write_text(yaml.safe_dump(document))
     assert main(["run", str(tmp_path / "scene.yaml"), "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err

@@ -2,6 +2,8 @@
 takes a file.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -28,15 +30,8 @@ def _tangent(i1, jac, mu, constants):
     s, j, i2 = constants[0], jac ** (-2.0 / 3.0), i1 - 1.0 + jac * jac
     m, t = _stress(i1, jac, mu, constants)
     mixed = -mu * (2.0 * (1.0 - s) * j + 4.0 * s * j * j) / (3.0 * jac)
-    return (
-        m,
-        t,
-        0.0,
-        mixed,
-        mu
-        * (5.0 * (1.0 - s) * j * i1 + s * j * j * (14.0 * i2 - 15.0 * jac * jac))
-        / (9.0 * jac * jac),
-    )
+    bent = 5.0 * (1.0 - s) * j * i1 + s * j * j * (14.0 * i2 - 15.0 * jac * jac)
+    return m, t, 0.0, mixed, mu * bent / (9.0 * jac * jac)
 
 
 #: A law that only this test knows, of both invariants (Mooney 1940; Rivlin 1948).
@@ -97,14 +92,11 @@ def test_a_wrong_formula_is_seen(law, constants, formula):
     def wrong(*args):
         found = getattr(law, formula)(*args)
         return (
-            1.001 * found if formula == "energy" else tuple(1.001 * value + 1e-3 for value in found)
+            1.001 * found if formula == "energy" else tuple(1.001 * part + 1e-3 for part in found)
         )
 
-    parts = {"energy": law.energy, "stress": law.stress, "tangent": law.tangent} | {formula: wrong}
     with pytest.raises(AssertionError, match="truth"):
-        check_derivatives(
-            Law("wrong", **parts, constants=law.constants, bilinear=law.bilinear), constants
-        )
+        check_derivatives(replace(law, **{formula: wrong}), constants)
 
 
 @EACH
@@ -114,29 +106,20 @@ def test_undeformed_every_law_is_the_linear_solid(law, constants):
     """
     m, t = law.stress(3.0, 1.0, 2.5, constants)
     assert (m, t) == pytest.approx((2.5, 3.0))
-    for xx, yy, xy in (
-        (1e-4, 0, 0),
-        (0, 1e-4, 0),
-        (1e-4, 1e-4, 0),
-        (0, 0, 1e-4),
-        (2e-4, -1e-4, 5e-5),
-    ):
+    for xx, yy, xy in 1e-4 * np.array([[1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [2, -1, 0.5]]):
         f = np.array([[1 + xx, xy], [xy, 1 + yy]])
         energy = law.energy(np.sum(f * f) + 1, np.linalg.det(f), 2.5, constants)
         mean = (xx + yy) / 3
         linear = 2.5 * ((xx - mean) ** 2 + (yy - mean) ** 2 + mean**2 + 2 * xy**2)
         assert energy == pytest.approx(linear, rel=2e-3)
-    assert law.energy(4.0, 0.9, 5.0, constants) == pytest.approx(
-        2 * law.energy(4.0, 0.9, 2.5, constants)
-    )
+    twice = 2 * law.energy(4.0, 0.9, 2.5, constants)
+    assert law.energy(4.0, 0.9, 5.0, constants) == pytest.approx(twice)
 
 
 def test_laws_without_their_constants_are_neo_hooke():
-    yeoh = LAWS["yeoh"].tangent(3.7, 0.95, 2.0, (0.0, 0.0))
-    np.testing.assert_allclose(yeoh, NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-15)
-    np.testing.assert_allclose(
-        _tangent(3.7, 0.95, 2.0, (0.0,)), NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-14
-    )
+    for law in (LAWS["yeoh"], MOONEY_RIVLIN):
+        tangent = law.tangent(3.7, 0.95, 2.0, (0.0, 0.0))
+        np.testing.assert_allclose(tangent, NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-14)
 
 
 def test_elements_are_given_to_the_laws_of_their_regions():
@@ -144,14 +127,11 @@ def test_elements_are_given_to_the_laws_of_their_regions():
     region = np.array([0, 2, 1, 1, 0])
     first, second = assign([(yeoh, (0.1, 0.2)), (NEO_HOOKE, ()), (yeoh, (0.3, 0.4))], region)
     assert (first.law, second.law) == (yeoh, NEO_HOOKE)
-    assert (
-        first.elements.tolist() == [True, True, False, False, True]
-        and second.elements.tolist() == (~first.elements).tolist()
-    )
+    assert first.elements.tolist() == [True, True, False, False, True]
+    assert second.elements.tolist() == (~first.elements).tolist()
     assert first.constants[first.elements].tolist() == [[0.1, 0.2], [0.3, 0.4], [0.1, 0.2]]
-    assert [
-        part.law for part in assign([(NEO_HOOKE, ()), (yeoh, (0.0, 0.0))], np.zeros(4, int))
-    ] == [NEO_HOOKE]
+    (only,) = assign([(NEO_HOOKE, ()), (yeoh, (0.0, 0.0))], np.zeros(4, int))
+    assert only.law == NEO_HOOKE
 
 
 LIGHT = {

@@ -4,6 +4,7 @@ they solve.
 
 import numpy as np
 import pytest
+import yaml
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.cli import main
@@ -18,13 +19,14 @@ from fingerpad.stimuli.smoothing import SIGMA, smoothed, turning
 from measured_profiles import INSTRUMENTS, measured
 from test_scene import changed, write
 
+pytestmark = pytest.mark.unit
+
 NAMES = ("indentation_depth", "contact_width", "centre_pressure", "strain_energy_density")
 
 
 # -- the filter ----------------------------------------------------------------------------------
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize("spacing", [1e-6, 7e-6, 24e-6])
 def test_the_filter_leaves_half_of_a_wave_at_its_cut_off(spacing):
     """ISO 16610-21: exp(-ln 2 (cut-off / wavelength)^2) of a wave is left."""
@@ -36,7 +38,6 @@ def test_the_filter_leaves_half_of_a_wave_at_its_cut_off(spacing):
         assert y[abs(even) < 1e-3].max() == pytest.approx(left * sampled, rel=0.01, abs=1e-3)
 
 
-@pytest.mark.unit
 def test_the_filter_keeps_lines_to_their_ends_and_lifts_parabolas():
     x = np.sort(np.random.default_rng(0).uniform(-1e-3, 1e-3, 300))
     even, y = smoothed(x, 0.3 * x + 1e-4, 100e-6)
@@ -50,34 +51,29 @@ def test_the_filter_keeps_lines_to_their_ends_and_lifts_parabolas():
     )
 
 
-@pytest.mark.unit
 def test_turning_to_and_fro_is_noise_and_turning_one_way_is_shape():
     x = np.linspace(-2e-3, 2e-3, 801)
     assert turning(x, Cylinder(curvature=400.0).outline(x), 100e-6).max() < 1e-8
-    assert (
-        turning(
-            np.array([-1.0, 0.0, 1e-6, 2e-6, 1.0]), np.array([1.0, 0.0, 0.0, 0.0, 1.0]), 1.0
-        ).max()
-        == 0
-    )
+    wedge = np.array([[-1.0, 0.0, 1e-6, 2e-6, 1.0], [1.0, 0.0, 0.0, 0.0, 1.0]])
+    assert turning(*wedge, 1.0).max() == 0
     zigzag = np.where(np.arange(801) % 2, 1e-6, 0.0)
     angle = np.arctan(1e-6 / (x[1] - x[0]))
     # of 20 kinks of twice that angle, half go one way and half the other
     assert turning(x, zigzag, 99.9e-6).max() == pytest.approx(20 * 2 * angle, rel=1e-6)
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize("edge", [269e-6, 67e-6, 20e-6])
 def test_profiles_without_noise_are_left_alone(edge):
     """Arcs of enough points, a wedge of five, a grating of sharp teeth: not one bit of their points
     changes.
     """
     arc = np.linspace(-2.4e-3, 2.4e-3, 201)
+    round_arc = arc, Cylinder(curvature=400.0).outline(arc)
     teeth = np.cumsum(np.tile([1.0, 0.2, 0.6, 0.2], 6)) * 1e-3
     for x, y in (
-        (arc, Cylinder(curvature=400.0).outline(arc)),
-        (np.round(arc, 9), np.round(Cylinder(curvature=400.0).outline(arc), 9)),
-        (1e-3 * np.array([-2, -1, 0, 1, 2]), 1e-3 * np.array([1, 0.25, 0, 0.25, 1])),
+        round_arc,
+        np.round(round_arc, 9),
+        1e-3 * np.array([[-2, -1, 0, 1, 2], [1, 0.25, 0, 0.25, 1]]),
         (teeth, np.tile([0, 0, 3e-4, 3e-4], 6)),
     ):
         raw = Points(x, y)
@@ -86,7 +82,6 @@ def test_profiles_without_noise_are_left_alone(edge):
         np.testing.assert_array_equal(felt.samples, raw.samples)
 
 
-@pytest.mark.unit
 def test_smooth_is_auto_none_or_a_length():
     x, y, _ = measured(1)
     assert Points(x, y).felt(200e-6).smoothing == pytest.approx(400e-6)
@@ -95,22 +90,22 @@ def test_smooth_is_auto_none_or_a_length():
     assert felt.smoothing == 50e-6 and 1e-7 < felt.moved(-1e-3, 1e-3) < 3e-6
 
 
-@pytest.mark.unit
 def test_finer_meshes_come_to_longer_cutoffs():
     """Two edges, where it is rough to them, or octaves of them, up to two edges of the thesis's
     skin: noise is no shape.
     """
     x, y, shape = measured(2)
     assert Points(x, shape).cutoffs(30e-6) == [0.0]
-    assert Points(x, y).cutoffs(268.8e-6) == pytest.approx([537.6e-6])
-    assert Points(x, y).cutoffs(134.4e-6) == pytest.approx([268.8e-6])
     # 24 um between points: nodes 33.6 um apart see one kink at a time, and no roughness
-    assert Points(x, y).cutoffs(33.6e-6) == pytest.approx([0.0, 67.2e-6, 134.4e-6, 268.8e-6])
-    x, y, _ = measured(1)
-    assert Points(x, y).cutoffs(40e-6) == pytest.approx([80e-6, 160e-6, 268.8e-6])
+    for number, edge, expected in (
+        (2, 268.8e-6, [537.6e-6]),
+        (2, 134.4e-6, [268.8e-6]),
+        (2, 33.6e-6, [0.0, 67.2e-6, 134.4e-6, 268.8e-6]),
+        (1, 40e-6, [80e-6, 160e-6, 268.8e-6]),
+    ):
+        assert Points(*measured(number)[:2]).cutoffs(edge) == pytest.approx(expected)
 
 
-@pytest.mark.unit
 def test_noise_is_smoothed_away_and_shape_is_kept(folder):
     """At 2 %: a cylinder's noise over 269 um, which leaves a cylinder; fine textures as short as
     the mesh feels them.
@@ -118,42 +113,32 @@ def test_noise_is_smoothed_away_and_shape_is_kept(folder):
     x, y, _ = measured(2)
     assert surface_at(folder, x, y, 0.02).smoothing == pytest.approx(268.8e-6)
     x = np.linspace(-3e-3, 3e-3, 1201)
-    waves = surface_at(
-        folder, x, x**2 / 2 / 2.5e-3 + 10e-6 * np.cos(2 * np.pi * x / 300e-6), "fine"
-    )
-    assert waves.smoothing <= 134.5e-6 and waves.moved < 2e-6
+    waves = x**2 / 2 / 2.5e-3 + 10e-6 * np.cos(2 * np.pi * x / 300e-6)
+    surface = surface_at(folder, x, waves, "fine")
+    assert surface.smoothing <= 134.5e-6 and surface.moved < 2e-6
 
 
 # -- where the points end ------------------------------------------------------------------------
 
 
-@pytest.mark.unit
 def test_ends():
     """Beyond the points: nothing but a rounded way up, a level surface, or the last slope for
     ever.
     """
     x, y = [-1e-3, 0.0, 1e-3], [1e-4, 0.0, 1e-4]
-    far = np.array([[2e-3, 0.0], [-2e-3, 0.0]])
-    along = np.arctan(0.1)
-    expected = {"slope": 2e-4 * np.cos(along), "level": 1e-4, "open": np.hypot(1e-3, 1e-4)}
-    for ends, distance in expected.items():
+    for ends, distance, outside, rel in (
+        ("slope", 2e-4 * np.cos(np.arctan(0.1)), 2e-4, 1e-9),
+        ("level", 1e-4, 1e-4, 1e-9),
+        ("open", np.hypot(1e-3, 1e-4), np.nan, 0.06),
+    ):
         profile = Points(x, y, ends).at(0.0, 50e-6)
-        found = profile.evaluate(far)[0]
-        assert found == pytest.approx([distance] * 2, rel=1e-9 if ends != "open" else 0.06), ends
-        outside = profile.outline(np.array([2e-3]))[0]
-        assert (
-            np.isnan(outside)
-            if ends == "open"
-            else outside == pytest.approx(2e-4 if ends == "slope" else 1e-4)
-        )
-    assert (
-        profile.symmetric
-        and profile.steepness == pytest.approx(0.1)
-        and profile.convexity == pytest.approx(Points(x, y, "slope").convexity)
-    )
+        found = profile.evaluate(np.array([[2e-3, 0.0], [-2e-3, 0.0]]))[0]
+        assert found == pytest.approx([distance] * 2, rel=rel), ends
+        assert profile.outline(np.array([2e-3])) == pytest.approx([outside], nan_ok=True)
+    assert profile.symmetric and profile.steepness == pytest.approx(0.1)
+    assert profile.convexity == pytest.approx(Points(x, y, "slope").convexity)
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize("ends", ["open", "level", "slope"])
 def test_distance_beside_the_ends_is_the_closest_of_all(ends):
     """Against every piece one by one, around and beyond the ends, the gradient its derivative."""
@@ -167,75 +152,69 @@ def test_distance_beside_the_ends_is_the_closest_of_all(ends):
     np.testing.assert_allclose(np.abs(profile.evaluate(at)[0]), nearest, atol=1e-6)
 
 
-SCENE = """
-stimulus: {{shape: sampled, csv: p.csv{more}}}
-motion: {motion}
-accuracy: draft
-"""
-PRESS = '[{press_to_force: "20 gf"}]'
+PRESS = [{"press_to_force": "20 gf"}]
 
 
-def scene(folder, rows, more="", motion=PRESS):
-    (folder / "p.csv").write_text("x (mm),y (mm)\n" + rows)
-    (folder / "scene.yaml").write_text(SCENE.format(more=more, motion=motion))
+def scene(folder, points, motion=PRESS, accuracy="draft", **keys):
+    """A scene with a profile of points, in mm or as text."""
+    if not isinstance(points, str):
+        points = "".join(f"{x:.9f},{y:.9f}\n" for x, y in np.transpose(points))
+    (folder / "p.csv").write_text("x (mm),y (mm)\n" + points)
+    stimulus = {"shape": "sampled", "csv": "p.csv"} | keys
+    document = {"stimulus": stimulus, "motion": motion, "accuracy": accuracy}
+    (folder / "scene.yaml").write_text(yaml.safe_dump(document))
     return folder / "scene.yaml"
 
 
 WEDGE = "-2,1\n-1,.25\n0,0\n1,.25\n2,1\n"
 
 
-@pytest.mark.unit
 def test_one_more_point_is_no_endless_wedge(tmp_path):
     """A falling last segment changes nothing where contact does not come; extended for ever it goes
     0.3 mm deeper.
     """
     plain, more, extended = (
-        simulate(load_scene(scene(tmp_path, rows, ends)))
-        for rows, ends in (
-            (WEDGE, ""),
-            (WEDGE + "2.1,0.9\n", ""),
-            (WEDGE + "2.1,0.9\n", ", ends: slope"),
-        )
+        simulate(load_scene(scene(tmp_path, WEDGE + one_more, **keys)))
+        for one_more, keys in (("", {}), ("2.1,0.9\n", {}), ("2.1,0.9\n", {"ends": "slope"}))
     )
     depth = [float(history.indentation_depth[-1]) * 1e3 for history in (plain, more, extended)]
-    assert depth[0] == pytest.approx(1.261, abs=2e-3) and depth[1] == pytest.approx(
-        depth[0], rel=1e-4
-    )
-    assert depth[2] == pytest.approx(1.559, abs=0.01)
+    assert depth[0] == pytest.approx(1.261, abs=2e-3)
+    assert depth[1:] == [pytest.approx(depth[0], rel=1e-4), pytest.approx(1.559, abs=0.01)]
     assert "contact_reached_profile_end" not in summary(plain)["run"]
     assert summary(extended)["run"]["contact_reached_profile_end"]
 
 
-@pytest.mark.unit
 def test_contact_at_the_end_of_the_points_is_said(tmp_path, capsys):
     """On the command line of plan and run, and in the summary."""
-    path = str(scene(tmp_path, "-0.5,0\n0.5,0\n"))
-    assert main(["plan", path]) == 0
-    assert (
-        "contact is expected to reach the end of the profile's points at x ="
-        in capsys.readouterr().out
+    path, said = (
+        str(scene(tmp_path, "-0.5,0\n0.5,0\n")),
+        "reach the end of the profile's points at x =",
     )
+    assert main(["plan", path]) == 0
+    assert f"contact is expected to {said}" in capsys.readouterr().out
     assert main(["run", path, "--out", str(tmp_path / "out")]) == 0
-    assert "note: contact reached the end of the profile's points at x =" in capsys.readouterr().out
+    assert f"note: contact {said.replace('reach', 'reached')}" in capsys.readouterr().out
 
 
-@pytest.mark.unit
 def test_points_beside_the_finger_are_refused(tmp_path, capsys):
     path = scene(tmp_path, "10,0\n20,0\n")
     with pytest.raises(PlanError, match="none of them over the finger"):
         plan(load_scene(path))
     assert main(["plan", str(path)]) == 2
     line = capsys.readouterr().err
-    assert (
-        len(line.splitlines()) == 1
-        and "stimulus.csv: 'p.csv' has points from x = 10 mm to 20 mm" in line
-    )
+    assert line.count("\n") == 1
+    assert "stimulus.csv: 'p.csv' has points from x = 10 mm to 20 mm" in line
 
 
 # -- reading -------------------------------------------------------------------------------------
 
 
-@pytest.mark.unit
+def read(folder, content):
+    (folder / "profile.csv").write_text(content)
+    stimulus = {"shape": "sampled", "csv": "profile.csv"}
+    return load_scene(write(folder, changed(stimulus=stimulus)))
+
+
 @pytest.mark.parametrize(
     "content",
     [
@@ -245,14 +224,10 @@ def test_points_beside_the_finger_are_refused(tmp_path, capsys):
     ],
 )
 def test_columns_in_any_unit_of_length(content, tmp_path):
-    (tmp_path / "profile.csv").write_text(content)
-    found = load_scene(
-        write(tmp_path, changed(stimulus={"shape": "sampled", "csv": "profile.csv"}))
-    ).stimulus
+    found = read(tmp_path, content).stimulus
     assert found.x == pytest.approx((-1e-3, 0, 1e-3)) and found.y == pytest.approx((5e-4, 0, 5e-4))
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -273,9 +248,8 @@ def test_columns_in_any_unit_of_length(content, tmp_path):
     ],
 )
 def test_units_that_cannot_be_meant(content, words, tmp_path):
-    (tmp_path / "profile.csv").write_text(content)
     with pytest.raises(SceneError) as caught:
-        load_scene(write(tmp_path, changed(stimulus={"shape": "sampled", "csv": "profile.csv"})))
+        read(tmp_path, content)
     assert words in str(caught.value) and len(str(caught.value).splitlines()) == 1
 
 
@@ -288,33 +262,18 @@ def folder(tmp_path_factory):
 
 
 def pressed(folder, x, y, smooth, motion=PRESS):
-    np.savetxt(
-        folder / "p.csv",
-        1e3 * np.column_stack([x, y]),
-        "%.9f",
-        ",",
-        header="x (mm),y (mm)",
-        comments="",
-    )
-    (folder / "scene.yaml").write_text(SCENE.format(more=f", smooth: {smooth}", motion=motion))
-    loaded = load_scene(folder / "scene.yaml")
+    points = 1e3 * np.array([x, y])
+    loaded = load_scene(scene(folder, points, motion, smooth=smooth))
     return plan(loaded), simulate(loaded)
 
 
 def surface_at(folder, x, y, accuracy):
-    np.savetxt(
-        folder / "p.csv",
-        1e3 * np.column_stack([x, y]),
-        "%.9f",
-        ",",
-        header="x (mm),y (mm)",
-        comments="",
-    )
-    text = SCENE.format(more="", motion='[{press_to_depth: "0.8 mm"}]').replace(
-        "draft", str(accuracy)
-    )
-    (folder / "scene.yaml").write_text(text)
-    return plan(load_scene(folder / "scene.yaml")).surface
+    motion = [{"press_to_depth": "0.8 mm"}]
+    return plan(load_scene(scene(folder, 1e3 * np.array([x, y]), motion, accuracy))).surface
+
+
+def end_depth(*how):
+    return pressed(*how)[1].indentation_depth.values[-1]
 
 
 def check_one(folder, number, exact):
@@ -329,13 +288,10 @@ def check_one(folder, number, exact):
     assert chosen.surface.smoothing > 0 and "smoothed at" in summary(history)["run"]["notes"][0]
     end, error = history.isel(time=-1), history.attrs["estimated_error"]
     for quantity in NAMES:
-        truth = exact[name][quantity].values
-        np.testing.assert_allclose(
-            end[quantity].values, truth, rtol=error, atol=1e-9, err_msg=f"{name}: {quantity}"
-        )
+        truth, said = exact[name][quantity].values, f"{name}: {quantity}"
+        np.testing.assert_allclose(end[quantity], truth, rtol=error, atol=1e-9, err_msg=said)
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize("number", [2, 3, 15])
 def test_noise_changes_no_more_than_is_said(number, folder):
     check_one(folder, number, {})
@@ -352,20 +308,15 @@ def test_thirty_measured_profiles(folder):
         check_one(folder, number, exact)
 
 
-@pytest.mark.unit
 def test_noise_can_be_kept(folder):
     """A thousand valleys, each narrower than the nodes are apart: the skin lies on what stands out,
     nearly as on the shape.
     """
     x, y, shape = measured(1)
-    depths = [
-        pressed(folder, x, heights, "none")[1].indentation_depth.values[-1]
-        for heights in (shape + 8 * (y - shape), shape)
-    ]
-    assert depths[0] == pytest.approx(depths[1], rel=1e-2)
+    noisy, smooth = shape + 8 * (y - shape), end_depth(folder, x, shape, "none")
+    assert end_depth(folder, x, noisy, "none") == pytest.approx(smooth, rel=1e-2)
 
 
-@pytest.mark.unit
 def test_the_advice_works(folder, monkeypatch):
     """Noise of micrometres every micrometre takes long as it is; the message names it and a
     smoothing with which it does not.
@@ -373,26 +324,26 @@ def test_the_advice_works(folder, monkeypatch):
     x, y, shape = measured(7)
     y = shape + 20 * (y - shape)
     monkeypatch.setattr(stepping, "MOST_ITERATIONS", 20)
-    with pytest.raises(
-        NonConvergence, match='corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"'
-    ) as caught:
+    said = 'corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"'
+    with pytest.raises(NonConvergence, match=said) as caught:
         pressed(folder, x, y, "none")
-    advised = str(caught.value).split("stimulus.smooth: ")[1].split(" or more")[0]
-    depths = [
-        pressed(folder, x, *given)[1].indentation_depth.values[-1]
-        for given in ((y, advised), (shape, "none"))
-    ]
-    assert depths[0] == pytest.approx(depths[1], rel=1e-2)
+    advised = str(caught.value).split('stimulus.smooth: "')[1].split('"')[0]
+    smooth = end_depth(folder, x, shape, "none")
+    assert end_depth(folder, x, y, advised) == pytest.approx(smooth, rel=1e-2)
 
 
-@pytest.mark.unit
 @pytest.mark.parametrize(
     "motion",
     [
-        '[{press_to_depth: "0.6 mm", speed: "2 mm/s"}, '
-        '{slide: "1 mm", speed: "10 mm/s", keep: depth}]',
-        '[{press_to_force: "20 gf", rate: "40 gf/s"}, {slide: "1 mm", speed: "10 mm/s"}]',
-        '[{press_to_force: "20 gf"}, {step: "1 mm", every: "0.5 mm"}]',
+        [
+            {"press_to_depth": "0.6 mm", "speed": "2 mm/s"},
+            {"slide": "1 mm", "speed": "10 mm/s", "keep": "depth"},
+        ],
+        [
+            {"press_to_force": "20 gf", "rate": "40 gf/s"},
+            {"slide": "1 mm", "speed": "10 mm/s"},
+        ],
+        [*PRESS, {"step": "1 mm", "every": "0.5 mm"}],
     ],
     ids=["stroked at a depth", "stroked", "stepped"],
 )
@@ -400,18 +351,15 @@ def test_noisy_profiles_are_stroked_and_stepped(motion, folder):
     """As those without noise."""
     x, y, shape = measured(5)
     (_, noisy), (_, exact) = (pressed(folder, x, heights, "auto", motion) for heights in (y, shape))
-    error = noisy.attrs["estimated_error"]
-    np.testing.assert_allclose(noisy.indentation_depth[-1], exact.indentation_depth[-1], rtol=error)
-    np.testing.assert_allclose(noisy.force[-1], exact.force[-1], rtol=error)
+    for name in ("indentation_depth", "force"):
+        error = noisy.attrs["estimated_error"]
+        np.testing.assert_allclose(noisy[name][-1], exact[name][-1], rtol=error)
 
 
-@pytest.mark.unit
 def test_the_smoothing_of_a_plan_is_kept(folder, tmp_path):
     x, y, _ = measured(1)
-    chosen, _ = pressed(folder, x, y, '"0.1 mm"')
-    assert (
-        chosen.surface.smoothing == pytest.approx(1e-4)
-        and chosen.discretisation["profile_smoothed_um"] == 100
-    )
+    chosen, _ = pressed(folder, x, y, "0.1 mm")
+    assert chosen.surface.smoothing == pytest.approx(1e-4)
+    assert chosen.discretisation["profile_smoothed_um"] == 100
     chosen.write(tmp_path / "plan.json")
     assert read_plan(tmp_path / "plan.json").surface == chosen.surface

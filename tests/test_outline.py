@@ -81,33 +81,27 @@ def test_bone_foot_is_the_nearest_point():
 
 
 @pytest.mark.parametrize(
-    ("changed", "words"),
+    ("key", "value", "words"),
     [
-        ({"half_width": 4e-3}, ["half_width", "4 mm", "between 4.59 mm and 25.24 mm"]),
-        ({"half_width": 30e-3}, ["half_width", "between"]),
-        ({"nail_half_width": 8.5e-3}, ["nail_half_width", "half_width"]),
-        ({"nail_half_width": 0.0}, ["nail_half_width", "above 0"]),
-        ({"dermis_thickness": -1e-3}, ["dermis_thickness", "above 0"]),
-        (
-            {"dermis_thickness": 2.3e-3},
-            ["epidermis_thickness + dermis_thickness", "3.15 mm", "3.069 mm"],
-        ),
-        (
-            {"dermis_thickness": 1.4e-3},
-            ["epidermis_thickness + dermis_thickness", "bone", "2.182 mm"],
-        ),
-        ({"bone_centre_height": -4e-3}, ["bone_centre_height", "inside"]),
-        ({"bone_centre_height": 30e-3}, ["bone_centre_height", "inside"]),
-        ({"bone_half_width": 9e-3}, ["bone_half_width", "inside"]),
-        ({"bone_half_width": 20e-3, "bone_half_height": 20e-3}, ["bone_half_height", "inside"]),
+        ("half_width", 4e-3, ["4 mm", "between 4.59 mm and 25.24 mm"]),
+        ("half_width", 30e-3, ["between"]),
+        ("nail_half_width", 8.5e-3, ["half_width"]),
+        ("nail_half_width", 0.0, ["above 0"]),
+        ("dermis_thickness", -1e-3, ["above 0"]),
+        ("dermis_thickness", 2.3e-3, ["epidermis_thickness +", "3.15 mm", "3.069 mm"]),
+        ("dermis_thickness", 1.4e-3, ["epidermis_thickness +", "bone", "2.182 mm"]),
+        ("bone_centre_height", -4e-3, ["inside"]),
+        ("bone_centre_height", 30e-3, ["inside"]),
+        ("bone_half_width", 9e-3, ["inside"]),
+        ("bone_half_height", 20e-3, ["inside"]),
     ],
 )
-def test_impossible_outlines_are_refused(changed, words):
+def test_impossible_outlines_are_refused(key, value, words):
     with pytest.raises(OutlineError) as caught:
-        OutlineCurve(outline(**changed))
+        OutlineCurve(outline(**{key: value}))
     message = str(caught.value)
     assert "\n" not in message
-    for word in words:
+    for word in (key, *words):
         assert word in message
 
 
@@ -121,17 +115,14 @@ def test_impossible_outlines_are_refused(changed, words):
 )
 def test_offsets_keep_their_distance(scale, height, widening, below, thickness):
     radius = scale * height
-    shape = {
+    inside = ["epidermis_thickness", "dermis_thickness", "nail_half_width"]
+    inside += ["bone_half_width", "bone_half_height"]
+    shape = dict.fromkeys(inside, 1e-6) | {
         "apex_height": height,
         "apex_radius": radius,
         "depth_below": below,
         "half_width": widening * np.sqrt(radius * height),
-        "epidermis_thickness": 1e-6,
-        "dermis_thickness": 1e-6,
         "bone_centre_height": 0.0,
-        "bone_half_width": 1e-4,
-        "bone_half_height": 1e-4,
-        "nail_half_width": 1e-4,
     }
     curve = OutlineCurve(outline(**shape))
     theta = np.linspace(0.0, np.pi, 501)

@@ -14,6 +14,12 @@ from fingerpad.stimuli.shapes.sampled import Points
 pytestmark = pytest.mark.unit
 
 WAVE = np.linspace(-0.02, 0.02, 41)
+WAVY = {
+    "curvatures": [400.0, 700.0],
+    "half_angle": np.radians(30),
+    "lead_in": 1e-3,
+    "run_out": 1e-3,
+}
 PROFILES = {
     "flat": Flat(),
     "cylinder": Cylinder(curvature=209.97),
@@ -21,14 +27,8 @@ PROFILES = {
     "sharp bar": Bar(width=1.5875e-3),
     "line": Line(),
     "sampled": Points(WAVE, -1e-3 * np.cos(300 * WAVE)),
-    "wavy": Wavy(curvatures=[400.0, 700.0], half_angle=np.radians(30), lead_in=1e-3, run_out=1e-3),
-    "wavy with fillets": Wavy(
-        curvatures=[400.0, 700.0],
-        half_angle=np.radians(30),
-        lead_in=1e-3,
-        run_out=1e-3,
-        fillet=0.5e-3,
-    ),
+    "wavy": Wavy(**WAVY),
+    "wavy with fillets": Wavy(**WAVY, fillet=0.5e-3),
 }
 STANDARD = Wavy()
 INCH_RADII = 25.4e-3 * np.array([1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125])
@@ -42,26 +42,13 @@ def test_gradient_is_the_derivative_of_the_distance(name, where):
     """Away from ridges of the distance, its finite differences are the gradient, which has length
     one.
     """
-    profile, x = PROFILES[name], np.array([where])
-    step = 1e-8
-    distance, gradient, _ = profile.evaluate(x)
+    profile, step = PROFILES[name], 1e-8
+    around = np.array(where) + step * np.array([[0, 0], [1, 0], [0, 1], [-1, 0], [0, -1]])
+    distance, gradient, _ = profile.evaluate(around)
     assert np.hypot(*gradient[0]) == pytest.approx(1.0, abs=1e-9)
-    around = [
-        profile.evaluate(x + step * np.array(d))[0][0] for d in ([1, 0], [-1, 0], [0, 1], [0, -1])
-    ]
-    slopes = (
-        np.array(
-            [
-                around[0] - distance[0],
-                distance[0] - around[1],
-                around[2] - distance[0],
-                distance[0] - around[3],
-            ]
-        )
-        / step
-    )
-    if abs(slopes[0] - slopes[1]) < 1e-3 and abs(slopes[2] - slopes[3]) < 1e-3:  # not on a ridge
-        np.testing.assert_allclose(gradient[0], [slopes[:2].mean(), slopes[2:].mean()], atol=2e-3)
+    ahead, behind = (distance[1:3] - distance[0]) / step, (distance[0] - distance[3:]) / step
+    if np.abs(ahead - behind).max() < 1e-3:  # not on a ridge
+        np.testing.assert_allclose(gradient[0], (ahead + behind) / 2, atol=2e-3)
 
 
 @pytest.mark.parametrize("name", ["flat", "cylinder", "bar", "line", "wavy", "wavy with fillets"])
@@ -84,12 +71,12 @@ def test_lowest_point_is_the_origin(name):
     """A profile touches from above at height zero: nothing below is inside, something just above
     is.
     """
-    profile = PROFILES[name]
     x = np.linspace(-6e-3, 6e-3, 601)
-    below, _, _ = profile.evaluate(np.column_stack([x, np.full_like(x, -1e-9)]))
-    assert below.min() > 0
-    above, _, _ = profile.evaluate(np.column_stack([x, np.full_like(x, 2e-6)]))
-    assert above.min() < 0
+    below, above = (
+        PROFILES[name].evaluate(np.column_stack([x, np.full_like(x, y)]))[0].min()
+        for y in (-1e-9, 2e-6)
+    )
+    assert below > 0 > above
 
 
 @pytest.mark.parametrize("name", ["cylinder", "bar", "sampled", "wavy", "wavy with fillets"])
@@ -135,24 +122,20 @@ def test_profile_must_be_single_valued(x):
 
 def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
     """Points (n, 2) of the wavy surface, drawn as a compass would: flat, arcs, flat."""
-    x, parts = (
-        lead_in,
-        [
-            np.column_stack(
-                [np.arange(0, lead_in, spacing), np.zeros(len(np.arange(0, lead_in, spacing)))]
-            )
-        ],
-    )
-    arcs = [(radii[0], 1)] + [arc for radius in radii[1:] for arc in ((radius, -1), (radius, 1))]
-    for radius, convex in arcs:
+
+    def flat(start, length):
+        x = np.arange(start, start + length, spacing)
+        return np.column_stack([x, np.zeros(len(x))])
+
+    x, parts = lead_in, [flat(0, lead_in)]
+    for radius, convex in [(radii[0], 1), *((r, sign) for r in radii[1:] for sign in (-1, 1))]:
         angle = np.arange(-half_angle, half_angle, spacing / radius)
-        sagging = radius * (np.cos(angle) - np.cos(half_angle))
+        along = x + radius * (np.sin(half_angle) + np.sin(angle))
         parts.append(
-            np.column_stack([x + radius * (np.sin(half_angle) + np.sin(angle)), -convex * sagging])
+            np.column_stack([along, -convex * radius * (np.cos(angle) - np.cos(half_angle))])
         )
         x += 2 * radius * np.sin(half_angle)
-    end = np.arange(x, x + run_out, spacing)
-    return np.vstack([*parts, np.column_stack([end, np.zeros(len(end))])])
+    return np.vstack([*parts, flat(x, run_out)])
 
 
 def test_wavy_surface_is_the_one_drawn():
@@ -162,9 +145,8 @@ def test_wavy_surface_is_the_one_drawn():
     points = drawn(INCH_RADII, np.radians(9), 8e-3, 10e-3)
     np.testing.assert_allclose(STANDARD.outline(points[:, 0]), points[:, 1], atol=1e-12)
     np.testing.assert_allclose(STANDARD.evaluate(points)[0], 0, atol=1e-12)
-    assert 1e3 * points[:, 1].min() == pytest.approx(-0.469, abs=5e-4) and 1e3 * points[
-        :, 1
-    ].max() == pytest.approx(0.313, abs=5e-4)
+    y = 1e3 * points[:, 1]
+    assert (y.min(), y.max()) == pytest.approx((-0.469, 0.313), abs=5e-4)
     flat = STANDARD.evaluate(np.array([[-5e-3, -1e-3], [0.2, -2e-3]]))[0]
     np.testing.assert_allclose(flat, [1e-3, 2e-3], rtol=1e-12)  # the flats go on for ever
     assert not STANDARD.symmetric
@@ -177,14 +159,11 @@ def slopes_at(profile, x, h=1e-8):
 
 def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
     """Slopes left and right of every join; the corners are reentrant and turn by the half angle."""
-    for k, x in enumerate(STANDARD.curve.x[1:-1]):
-        before, after = slopes_at(STANDARD, x)
-        if k in (0, len(STANDARD.curve.x) - 3):
-            assert after - before == pytest.approx(-9, abs=1e-3)
-        else:
-            assert after == pytest.approx(before, abs=1e-3) and abs(before) == pytest.approx(
-                9, abs=1e-3
-            )
+    slopes = np.array([slopes_at(STANDARD, x) for x in STANDARD.curve.x[1:-1]])
+    turn = np.zeros(len(slopes))
+    turn[[0, -1]] = -9
+    np.testing.assert_allclose(slopes[:, 1] - slopes[:, 0], turn, atol=1e-3)
+    np.testing.assert_allclose(np.abs(slopes[1:-1]), 9, atol=1e-3)
 
 
 def test_fillet_is_tangent_to_flat_and_arc():
@@ -241,14 +220,13 @@ def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
     steps = np.array(pieces)
     profile = Points(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
     at = np.array([profile.x[0] + place[0] * np.ptp(profile.x), place[1]])
-    start, way = (
-        np.column_stack([profile.x, profile.y])[:-1],
-        np.column_stack([np.diff(profile.x), np.diff(profile.y)]),
-    )
+    ends = np.column_stack([profile.x, profile.y])
+    start, way = ends[:-1], np.diff(ends, axis=0)
     share = np.einsum("ij,ij->i", at - start, way) / np.sum(way**2, axis=1)
-    low, high = np.zeros(len(way)), np.ones(len(way))
-    low[0], high[-1] = -np.inf, np.inf
-    expected = np.linalg.norm(at - start - np.clip(share, low, high)[:, None] * way, axis=1).min()
+    first, last = share[0], share[-1]
+    share = np.clip(share, 0, 1)
+    share[[0, -1]] = min(first, 1), max(last, 0)  # these go on for ever
+    expected = np.linalg.norm(at - start - share[:, None] * way, axis=1).min()
     assert abs(profile.evaluate(at[None])[0][0]) == pytest.approx(expected, abs=1e-9)
 
 
@@ -277,13 +255,8 @@ def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
     np.testing.assert_allclose(distance, [0, -10e-6, 10e-6 * np.cos(half)], atol=1e-10)
     np.testing.assert_allclose(gradient[:2], [-up, -up], atol=1e-9)
     np.testing.assert_allclose(curvature[:2], [0, -1e5], rtol=1e-6)
-    assert (
-        min(
-            np.abs(gradient[2] - normal).max()
-            for normal in ([0, -1], [-np.sin(2 * half), -np.cos(2 * half)])
-        )
-        < 1e-3
-    )
+    sides = [[0, -1], [-np.sin(2 * half), -np.cos(2 * half)]]
+    assert np.abs(gradient[2] - sides).max(axis=1).min() < 1e-3
 
 
 def test_level_sets_of_arcs_and_corners():
@@ -307,32 +280,28 @@ def test_arcs_on_a_smooth_join_are_not_corners():
     """Straight below a join between arcs the curvature is that of one of them, at any distance down
     to none.
     """
+    ways = np.array([0.0, 1e-10, 1e-7, 1e-4])
     for x in STANDARD.curve.x[2:-2]:
-        foot = np.array([x, 0.0])
-        normal = STANDARD.evaluate(foot[None])[1][0]
-        for distance in (0.0, 1e-10, 1e-7, 1e-4):
-            found = STANDARD.evaluate((foot + distance * normal)[None])
-            assert found[0][0] == pytest.approx(distance, abs=1e-15) and abs(found[2][0]) < 350
+        foot = np.array([[x, 0.0]])
+        distance, _, curvature = STANDARD.evaluate(
+            foot + ways[:, None] * STANDARD.evaluate(foot)[1]
+        )
+        np.testing.assert_allclose(distance, ways, rtol=1e-6, atol=1e-15)
+        assert np.abs(curvature).max() < 350
 
 
 def test_what_planning_asks_of_a_surface():
     """Largest slope and curvature, and how far the surface reaches below its start."""
-    assert STANDARD.steepness == pytest.approx(
-        np.tan(np.radians(9))
-    ) and STANDARD.convexity == pytest.approx(1 / 3.175e-3)
-    assert STANDARD.dip == pytest.approx(38.1e-3 * (1 - np.cos(np.radians(9))))
+    expected = np.tan(np.radians(9)), 1 / 3.175e-3, 38.1e-3 * (1 - np.cos(np.radians(9)))
+    assert (STANDARD.steepness, STANDARD.convexity, STANDARD.dip) == pytest.approx(expected)
     assert (Flat().steepness, Flat().convexity, Flat().dip) == (0, 0, 0)
-    assert (
-        Cylinder(curvature=210.0).convexity == 210
-        and Line().convexity == pytest.approx(1e4)
-        and Bar(width=1e-3).convexity == 0
-    )
+    convex = [each.convexity for each in (Cylinder(curvature=210.0), Line(), Bar(width=1e-3))]
+    assert convex == pytest.approx([210, 1e4, 0])
     x = np.linspace(-3e-3, 3e-3, 601)
     assert Points(x, Cylinder(curvature=210.0).outline(x)).convexity == pytest.approx(210, rel=0.5)
     groove = Points([-2e-3, -1e-3, 0, 1e-3, 2e-3], [0, 0, 1e-3, 0, 0])
-    assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx(
-        (1e-3, 1.0, np.pi / 4 / 1e-3)
-    )
+    found = groove.dip, groove.steepness, groove.convexity
+    assert found == pytest.approx((1e-3, 1.0, np.pi / 4 / 1e-3))
 
 
 @pytest.mark.parametrize(
@@ -357,17 +326,15 @@ def test_nearly_flat_cylinders_are_exact(curvature):
     10^13 m rounds away.
     """
     at = np.random.default_rng(0).uniform([-5e-3, -2e-3], [5e-3, 1e-4], (200, 2))
-    distance, gradient, _ = Cylinder(curvature=curvature).evaluate(at)
-    np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
+    cylinder, sagitta = Cylinder(curvature=curvature), curvature * at[:, 0] ** 2 / 2
+    distance, gradient, _ = cylinder.evaluate(at)
+    np.testing.assert_allclose(distance, -at[:, 1] + sagitta, rtol=1e-9)
     np.testing.assert_allclose(gradient, np.tile([0.0, -1.0], (200, 1)), atol=1e-9)
-    np.testing.assert_allclose(
-        Cylinder(curvature=curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9
-    )
+    np.testing.assert_allclose(cylinder.outline(at[:, 0]), sagitta, rtol=1e-9)
 
 
 @pytest.mark.parametrize("deep", [False, True])
 def test_a_changed_copy_has_its_own_curve(deep):
     steep = STANDARD.model_copy(update={"half_angle": np.radians(12)}, deep=deep)
-    assert STANDARD.curve is STANDARD.curve and steep.steepness == pytest.approx(
-        np.tan(np.radians(12))
-    )
+    assert STANDARD.curve is STANDARD.curve
+    assert steep.steepness == pytest.approx(np.tan(np.radians(12)))

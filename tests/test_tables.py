@@ -7,6 +7,7 @@ import itertools
 import random
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fingerpad import load_scene
@@ -112,12 +113,11 @@ READ = {
 
 @pytest.mark.parametrize("name", READ)
 def test_a_profile_is_read_right_however_it_is_written(tmp_path, name):
-    stimulus = read_profile(tmp_path, written(**READ[name]))
-    tolerance = (
-        1e-3 * 0.5 * 10.0 ** -READ[name].get("digits", 4) / READ[name].get("scale", 1.0) + 1e-15
-    )
-    np.testing.assert_allclose(stimulus.x, 1e-3 * X, atol=tolerance)
-    np.testing.assert_allclose(stimulus.y, 1e-3 * Y, atol=tolerance)
+    ways = READ[name]
+    stimulus = read_profile(tmp_path, written(**ways))
+    rounding = 0.5 * 10.0 ** -ways.get("digits", 4) / ways.get("scale", 1.0)
+    np.testing.assert_allclose(stimulus.x, 1e-3 * X, atol=1e-3 * rounding + 1e-15)
+    np.testing.assert_allclose(stimulus.y, 1e-3 * Y, atol=1e-3 * rounding + 1e-15)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,6 @@ def with_cell(text, row=3, column=1):
     return "\n".join(lines).encode()
 
 
-THREE = "".join(f"{x:.3f};{y + 2:.3f}\n" for x, y in POINTS)
 REFUSED = {
     "decimal commas between commas": (written(comma=True), "has 4 cells in row 2, 2 in its header"),
     "commas that may be thousands": (
@@ -187,14 +186,9 @@ def test_what_is_no_profile_is_refused_in_one_line(tmp_path, name):
     with pytest.raises(SceneError) as caught:
         read_profile(tmp_path, content)
     said = str(caught.value)
-    assert (
-        words in said
-        and "stimulus.csv: " in said
-        and "profile.csv" in said
-        and "allowed: " in said
-        and "\n" not in said
-    )
-    assert len(said) < 500
+    for part in (words, "stimulus.csv: ", "profile.csv", "allowed: "):
+        assert part in said
+    assert "\n" not in said and len(said) < 500
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -227,24 +221,18 @@ def test_fifty_ways_at_random_are_read_right_or_refused(tmp_path, seed):
 
 
 def test_numpy_and_pandas_files_are_read(tmp_path):
-    pandas = pytest.importorskip("pandas")
-    points = np.column_stack([X, Y])
+    points, names = np.column_stack([X, Y]), ["x (mm)", "y (mm)"]
+    contents = []
     for delimiter, comments in itertools.product([",", ";", "\t", " "], ["# ", ""]):
         out = io.StringIO()
-        np.savetxt(
-            out,
-            points,
-            delimiter=delimiter,
-            header=delimiter.join(["x (mm)", "y (mm)"]),
-            comments=comments,
-        )
-        np.testing.assert_allclose(
-            read_profile(tmp_path, out.getvalue().encode()).y, 1e-3 * Y, atol=1e-12
-        )
-    frame = pandas.DataFrame({"x (mm)": X, "y (mm)": Y})
+        header = delimiter.join(names)
+        np.savetxt(out, points, delimiter=delimiter, header=header, comments=comments)
+        contents.append(out.getvalue())
     for how in ({"sep": ","}, {"sep": ";", "decimal": ","}, {"sep": "\t"}):
-        content = frame.to_csv(index=False, **how).encode()
-        np.testing.assert_allclose(read_profile(tmp_path, content).y, 1e-3 * Y, atol=1e-12)
+        contents.append(pd.DataFrame(points, columns=names).to_csv(index=False, **how))
+    for content in contents:
+        stimulus = read_profile(tmp_path, content.encode())
+        np.testing.assert_allclose(stimulus.y, 1e-3 * Y, atol=1e-12)
 
 
 def test_rows_are_counted_as_an_editor_counts(tmp_path):

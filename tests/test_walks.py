@@ -19,6 +19,7 @@ import fingerpad
 from cysyk1999.reference_data import read_force_depth
 from cysyk1999.studies.calibration.force import ElasticCurve, fit_constant
 from fingerpad.cli import main
+from fingerpad.results import read_history
 
 pytestmark = pytest.mark.workflow
 
@@ -39,27 +40,22 @@ def elsewhere(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def told(name, capsys, *options, stimulus=ROUND, motion=(PRESS,), accuracy=COARSE, **keys):
-    """Write a scene, run it as a command, and read what it says and leaves: its line and its
-    summary.
-    """
+def told(name, capsys, *options, stimulus=ROUND, motion=(STEADY,), accuracy=COARSE, **keys):
+    """Run a scene as a command; its summary and its line."""
     document = {"stimulus": stimulus, "motion": list(motion), "accuracy": accuracy, **keys}
     Path(f"{name}.yaml").write_text(yaml.safe_dump(document), encoding="utf-8")
     assert main(["run", f"{name}.yaml", *options]) == 0
     out, err = capsys.readouterr()
-    assert (
-        err == ""
-        and out.count("\n") == 1 + out.count("\nnote: ")
-        and f"results in results/{name}" in out
-    )
-    assert {"history.nc", "plan.json", "summary.json"} <= {
-        path.name for path in Path("results", name).iterdir()
-    }
-    return out, json.loads(Path("results", name, "summary.json").read_text())
+    assert err == "" and out.count("\n") == 1 + out.count("\nnote: ")
+    assert f"results in results/{name}" in out
+    left = {path.name for path in Path("results", name).iterdir()}
+    assert {"history.nc", "plan.json", "summary.json"} <= left
+    return json.loads(Path("results", name, "summary.json").read_text()), out
 
 
-def last(summary):
-    return summary["legs"][-1]
+def pressed(name, capsys, *options, **keys):
+    """What the summary says of the last leg of such a run."""
+    return told(name, capsys, *options, **keys)[0]["legs"][-1]
 
 
 # --- the researcher -------------------------------------------------------------------------------
@@ -69,90 +65,57 @@ def test_a_researcher_presses(capsys):
     """Ramps, plates, needles, edges and steady states: the force comes back as it went in, and
     shapes come in their order.
     """
-    line, ramp = told("ramp", capsys)
-    assert "force 20.0 gf (17.2 N/m)" in line and last(ramp)["force_gf"] == pytest.approx(
-        20, rel=1e-4
-    )
-    _, creep = told("creep", capsys, motion=[PRESS, {"hold": "60 s"}], outputs={"responses": True})
-    _, steady = told("steady", capsys, motion=[STEADY])
-    assert (
-        last(ramp)["depth_mm"]
-        < last(creep)["depth_mm"]
-        == pytest.approx(last(steady)["depth_mm"], rel=0.01)
-    )
-    sent = {row["depth_mm"]: row["impulses"] for row in creep["responses"]}
-    assert list(sent.values()) == sorted(sent.values(), reverse=True) and max(sent.values()) > 100
-    _, plate = told("plate", capsys, stimulus=PLATE, motion=[STEADY])
-    _, line_load = told(
-        "line", capsys, stimulus={"shape": "line"}, motion=[{"press_to_force": "10 gf"}]
-    )
-    _, bar = told(
-        "bar",
-        capsys,
-        stimulus={"shape": "bar", "width": "3 mm", "fillet": "0.3 mm"},
-        motion=[STEADY],
-    )
-    depths = [last(summary)["depth_mm"] for summary in (plate, bar, steady)]
-    assert depths == sorted(depths) and last(line_load)["depth_mm"] > 0.5 * last(steady)["depth_mm"]
-    _, soft = told("soft", capsys, specimen=SOFT, motion=[STEADY])
-    assert last(soft)["depth_mm"] > last(steady)["depth_mm"]
+    ramp, line = told("ramp", capsys, motion=[PRESS])
+    assert "force 20.0 gf (17.2 N/m)" in line
+    assert ramp["legs"][-1]["force_gf"] == pytest.approx(20, rel=1e-4)
+    held = [PRESS, {"hold": "60 s"}]
+    creep, _ = told("creep", capsys, motion=held, outputs={"responses": True})
+    steady = pressed("steady", capsys)["depth_mm"]
+    assert ramp["legs"][-1]["depth_mm"] < creep["legs"][-1]["depth_mm"]
+    assert creep["legs"][-1]["depth_mm"] == pytest.approx(steady, rel=0.01)
+    sent = list({row["depth_mm"]: row["impulses"] for row in creep["responses"]}.values())
+    assert sent == sorted(sent, reverse=True) and max(sent) > 100
+    bar = {"shape": "bar", "width": "3 mm", "fillet": "0.3 mm"}
+    light = [{"press_to_force": "10 gf"}]
+    knife = pressed("line", capsys, stimulus={"shape": "line"}, motion=light)["depth_mm"]
+    plate = pressed("plate", capsys, stimulus=PLATE)["depth_mm"]
+    assert plate <= pressed("bar", capsys, stimulus=bar)["depth_mm"] <= steady < 2 * knife
+    assert pressed("soft", capsys, specimen=SOFT)["depth_mm"] > steady
 
 
 def test_a_researcher_moves(capsys):
     """Strokes there and back, steps over a surface, cycles, and a release with its recovery."""
-    _, stroke = told(
-        "stroke",
-        capsys,
-        stimulus=PLATE,
-        friction=0.4,
-        accuracy="draft",
-        motion=[
-            STEADY,
-            {"slide": "1 mm", "speed": "10 mm/s"},
-            {"slide": "-1 mm", "speed": "10 mm/s"},
-        ],
-    )
+    ways = [{"slide": way, "speed": "10 mm/s"} for way in ("1 mm", "-1 mm")]
+    rubbed = {"stimulus": PLATE, "friction": 0.4, "accuracy": "draft"}
+    stroke, _ = told("stroke", capsys, motion=[STEADY, *ways], **rubbed)
     there, back = stroke["legs"][1:]
-    assert (
-        there["tangential_force_N_per_m"] * back["tangential_force_N_per_m"] < 0
-        and back["stroke_distance_mm"] == 0
-    )
-    assert abs(there["tangential_force_N_per_m"]) <= 0.4 * there["force_N_per_m"] * (1 + 1e-6)
-    _, steps = told(
-        "steps", capsys, stimulus=WAVES, motion=[STEADY, {"step": "4 mm", "every": "2 mm"}]
-    )
-    assert last(steps)["stroke_distance_mm"] == pytest.approx(4)
-    cycle = [
-        {"press_to_depth": "0.4 mm", "speed": "2 mm/s"},
-        {"press_to_depth": "0.2 mm", "speed": "2 mm/s"},
-    ]
-    _, cycles = told("cycles", capsys, motion=2 * cycle)
-    assert (
-        len(cycles["legs"]) == 4 and cycles["legs"][2]["force_N"] < cycles["legs"][0]["force_N"]
-    ), "it relaxes under cycles"
-    _, free = told("release", capsys, "--vtu", motion=[PRESS, {"lift": "2 mm/s"}, {"hold": "5 s"}])
-    assert (
-        last(free)["force_N"] == last(free)["contact_width_mm"] == 0
-        and free["run"]["estimated_error"] < 0.6
-    )
+    lateral = there["tangential_force_N_per_m"]
+    assert lateral * back["tangential_force_N_per_m"] < 0 and back["stroke_distance_mm"] == 0
+    assert abs(lateral) <= 0.4 * there["force_N_per_m"] * (1 + 1e-6)
+    stepping = [STEADY, {"step": "4 mm", "every": "2 mm"}]
+    steps = pressed("steps", capsys, stimulus=WAVES, motion=stepping)
+    assert steps["stroke_distance_mm"] == pytest.approx(4)
+    cycle = [{"press_to_depth": depth, "speed": "2 mm/s"} for depth in ("0.4 mm", "0.2 mm")]
+    forces = [leg["force_N"] for leg in told("cycles", capsys, motion=2 * cycle)[0]["legs"]]
+    assert len(forces) == 4 and forces[2] < forces[0], "it relaxes under cycles"
+    release = [PRESS, {"lift": "2 mm/s"}, {"hold": "5 s"}]
+    free, _ = told("release", capsys, "--vtu", motion=release)
+    assert free["legs"][-1]["force_N"] == free["legs"][-1]["contact_width_mm"] == 0
+    assert free["run"]["estimated_error"] < 0.6
     field = meshio.read("results/release/vtu/snapshot_0.vtu")
     assert np.abs(field.point_data["displacement (mm)"]).max() < 0.1 * free["legs"][0]["depth_mm"]
 
 
 def test_a_researcher_plots(capsys):
     """Pressure over place and time, and the middle of it, from the file of a run."""
-    told("ramp", capsys)
-    from fingerpad.results import read_history
-
+    told("ramp", capsys, motion=[PRESS])
     history = read_history("results/ramp/history.nc")
     figure, (above, below) = plt.subplots(2)
     history.contact_pressure.plot(x="skin_arc", y="time", ax=above)
     history.contact_pressure.sel(skin_arc=0, method="nearest").plot(ax=below)
     figure.savefig("pressure.png")
-    assert (
-        "way along the undeformed skin" in above.get_xlabel()
-        and plt.imread("pressure.png").std() > 0.05
-    )
+    assert "way along the undeformed skin" in above.get_xlabel()
+    assert plt.imread("pressure.png").std() > 0.05
     plt.close(figure)
 
 
@@ -187,31 +150,18 @@ def test_an_engineer_measures_a_profile(capsys):
     """A cylinder sampled every 0.1 mm is the cylinder; so is a scan of it every 5 um, rounded to
     whole micrometres.
     """
-    x = np.linspace(-2.4, 2.4, 49)
-    rows = [f"{a:.4f},{2.5 - np.sqrt(2.5**2 - a**2):.5f}" for a in x]
-    Path("scan.csv").write_text("\n".join(["x (mm),y (mm)", *rows]), encoding="utf-8")
-    _, exact = told("exact", capsys, motion=[STEADY])
-    _, scan = told(
-        "scan", capsys, stimulus={"shape": "sampled", "csv": "scan.csv"}, motion=[STEADY]
-    )
-    x = np.arange(-2400, 2401, 5) / 1000
-    np.savetxt(
-        "fine.csv",
-        np.column_stack([x, 2.5 - np.sqrt(2.5**2 - x**2)]),
-        "%.3f",
-        ",",
-        header="x (mm),y (mm)",
-        comments="",
-    )
-    _, fine = told(
-        "fine",
-        capsys,
-        stimulus={"shape": "sampled", "csv": "fine.csv"},
-        motion=[STEADY, {"lift": "steady"}],
-    )
-    for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
-        assert last(scan)[key] == pytest.approx(last(exact)[key], rel=0.05), key
-        assert fine["legs"][0][key] == pytest.approx(last(exact)[key], rel=0.05), key
+    exact = pressed("exact", capsys)
+    for name, spacing, digits, motion in (
+        ("scan", 0.1, 5, [STEADY]),
+        ("fine", 0.005, 3, [STEADY, {"lift": "steady"}]),
+    ):
+        x = spacing * np.arange(-round(2.4 / spacing), round(2.4 / spacing) + 1)
+        rows = [f"{a:.4f},{2.5 - np.sqrt(2.5**2 - a**2):.{digits}f}" for a in x]
+        Path(f"{name}.csv").write_text("\n".join(["x (mm),y (mm)", *rows]), encoding="utf-8")
+        sampled = {"shape": "sampled", "csv": f"{name}.csv"}
+        found = told(name, capsys, stimulus=sampled, motion=motion)[0]["legs"][0]
+        for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
+            assert found[key] == pytest.approx(exact[key], rel=0.05), key
 
 
 def test_an_engineer_presses_robot_skin(capsys):
@@ -225,30 +175,14 @@ def test_an_engineer_presses_robot_skin(capsys):
     skin = {"slab": {"width": "30 mm", "layers": foam}, "prony": "none"}
     bar = {"shape": "bar", "width": "6 mm", "fillet": "0.5 mm"}
     receptors = {"receptors": {"depths": ["1.5 mm"]}}
-    _, shallow = told(
-        "shallow",
-        capsys,
-        specimen=skin,
-        stimulus=bar,
-        motion=[{"press_to_depth": "0.1 mm"}],
-        outputs=receptors,
+    scene = {"specimen": skin, "stimulus": bar, "outputs": receptors}
+    shallow, deep = (
+        pressed(name, capsys, motion=[{"press_to_depth": depth}], **scene)
+        for name, depth in (("shallow", "0.1 mm"), ("deep", "0.2 mm"))
     )
-    _, deep = told(
-        "deep",
-        capsys,
-        specimen=skin,
-        stimulus=bar,
-        motion=[{"press_to_depth": "0.2 mm"}],
-        outputs=receptors,
-    )
-    assert 1.8 < last(deep)["force_N"] / last(shallow)["force_N"] < 2.6
-    assert (
-        4
-        < last(deep)["receptors"][0]["strain_energy_Pa"]
-        / last(shallow)["receptors"][0]["strain_energy_Pa"]
-        * 1.2
-        < 7
-    )
+    assert 1.8 < deep["force_N"] / shallow["force_N"] < 2.6
+    energies = [leg["receptors"][0]["strain_energy_Pa"] for leg in (shallow, deep)]
+    assert 4 < energies[1] / energies[0] * 1.2 < 7
 
 
 # --- the student ----------------------------------------------------------------------------------
@@ -264,14 +198,8 @@ def test_a_student_brings_a_mesh_and_forces(capsys):
     )
     assert main(["mesh", "pad.yaml", "--out", "meshes/mine.msh"]) == 0
     capsys.readouterr()
-    _, found = told(
-        "mine",
-        capsys,
-        specimen={"mesh": "meshes/mine.msh"},
-        stimulus=PLATE,
-        motion=plates,
-        accuracy="thesis",
-    )
+    own = {"mesh": "meshes/mine.msh"}
+    found, _ = told("mine", capsys, specimen=own, stimulus=PLATE, motion=plates, accuracy="thesis")
     Path("forces").mkdir()
     rows = [
         f"1,flat plate,{leg['depth_mm']:.6g},0,{2.5 * leg['force_N']:.6g},measured by me,a scale"
@@ -280,26 +208,19 @@ def test_a_student_brings_a_mesh_and_forces(capsys):
     header = "subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained"
     Path("forces/anna.csv").write_text("\n".join([header, *rows, ""]), encoding="utf-8")
     measured = read_force_depth("forces")
-    from fingerpad.results import read_history
-
     history = read_history("results/mine/history.nc")
     curve = ElasticCurve.from_history(history)
-    fit = fit_constant(
-        curve, measured.depth_mm.to_numpy() * 1e-3, measured.force_N.to_numpy(), 0.0114
-    )
+    forces = measured.force_N.to_numpy()
+    fit = fit_constant(curve, measured.depth_mm.to_numpy() * 1e-3, forces, 0.0114)
     assert fit.value == pytest.approx(2.5, rel=1e-3)
     figure, axes = plt.subplots()
     loaded = history.assign_coords(
         depth_mm=history.indentation_depth * 1e3, force_N=history.force * 0.0114
     )
     (line,) = loaded.force_N.plot(x="depth_mm", ax=axes, label="simulated on my mesh")
-    axes.plot(
-        measured.depth_mm, measured.force_N / fit.value, "o", label="measured, over the factor"
-    )
+    axes.plot(measured.depth_mm, forces / fit.value, "o", label="measured, over the factor")
     axes.legend()
     figure.savefig("mine.png")
     at = np.interp(measured.depth_mm, line.get_xdata(), line.get_ydata())
-    assert (
-        at == pytest.approx(measured.force_N.to_numpy() / 2.5, rel=1e-3)
-        and np.ptp(plt.imread("mine.png")) > 0.5
-    )
+    assert at == pytest.approx(forces / 2.5, rel=1e-3)
+    assert np.ptp(plt.imread("mine.png")) > 0.5

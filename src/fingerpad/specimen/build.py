@@ -19,7 +19,7 @@ from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.gmsh_worker import ask
 from fingerpad.specimen.layered import COLUMN, FINE, ROW, Layout, layout_of
 from fingerpad.specimen.outline import OutlineLike
-from fingerpad.specimen.pad import OPTIONAL, REGIONS, MeshError, MeshSize, PadMesh
+from fingerpad.specimen.pad import OPTIONAL, REGIONS, MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation, shortest_edge
 
 
@@ -99,13 +99,8 @@ def _whole(layout: Layout, steps: np.ndarray) -> PadMesh:
         symmetric=layout.ridged is None or layout.ridged.symmetric,
         regions=(*OPTIONAL, *REGIONS)[-1 - layout.region[-1] :],
     )
-    try:
-        check_orientation(mesh, "outline")
-    except MeshError as error:
-        raise MeshError(
-            f"{error}; lower ridges, thicker layers, thicker fat beside the bone or a smaller "
-            "skin_edge are allowed"
-        ) from None
+    advice = "lower ridges, thicker layers, thicker fat beside the bone or a smaller skin_edge"
+    check_orientation(mesh, "outline", advice)
     return mesh
 
 

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from scipy.spatial import KDTree
 
 from fingerpad.files import is_file, read_input, write_atomically
@@ -31,6 +32,7 @@ from fingerpad.specimen.pad import (
     UNNAMED,
     MeshError,
     PadMesh,
+    edge_keys,
     element_edges,
 )
 from fingerpad.specimen.quality import check_orientation, counter_clockwise
@@ -102,19 +104,22 @@ def _listed(names) -> str:
     return ", ".join(names) or "none"
 
 
+def _check_names(names: Iterable[str], known: Iterable[str], what: str, kind: str) -> None:
+    """`MeshError` for the first name (of ``what``) that is none of the ``kind`` the mesh has."""
+    for name in names:
+        if name not in known:
+            raise MeshError(
+                f"{what}{name} is no {kind} of the mesh; its physical {kind}s are {_listed(known)}"
+            )
+
+
 def _layers(surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...]:
     """Names of the layers: the wanted ones, or else a finger's, or else all there are."""
-    for name in wanted:
-        if name not in surfaces:
-            raise MeshError(
-                f"layer {name} is no surface of the mesh; "
-                f"its physical surfaces are {_listed(surfaces)}"
-            )
+    _check_names(wanted, surfaces, "layer ", "surface")
     if not surfaces:
         raise MeshError("no surface is named; each layer must be a physical surface")
-    finger = all(name in surfaces for name in REGIONS)
-    known = tuple(name for name in (*OPTIONAL, *REGIONS) if name in surfaces)
-    return tuple(wanted) or (known if finger else tuple(surfaces))
+    finger = tuple(name for name in (*OPTIONAL, *REGIONS) if name in surfaces)
+    return tuple(wanted or (finger if {*REGIONS} <= {*surfaces} else surfaces))
 
 
 def _held(curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str, ...]:
@@ -124,13 +129,8 @@ def _held(curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str,
             f"curve {SKIN} is missing; a physical curve {SKIN} must be there, "
             f"among {_listed(curves)}"
         )
-    for key, names in (("fixed", fixed), ("free", free)):
-        for name in names:
-            if name not in curves:
-                raise MeshError(
-                    f"{key}: {name} is no curve of the mesh; "
-                    f"its physical curves are {_listed(curves)}"
-                )
+    _check_names(fixed, curves, "fixed: ", "curve")
+    _check_names(free, curves, "free: ", "curve")
     held = [name for name in HELD if name in curves and name not in free]
     if not held and not fixed:
         others = _listed(name for name in curves if name != SKIN)
@@ -145,34 +145,37 @@ def _gather_cells(
     surfaces: dict, regions: tuple[str, ...], count: int
 ) -> tuple[str, np.ndarray, np.ndarray]:
     """Element kind, node tags (elements, nodes) and region (elements,) of all layers."""
-    blocks = [(index, *block) for index, name in enumerate(regions) for block in surfaces[name]]
-    for index, kind, *_ in blocks:
-        if kind not in _ELEMENTS:
-            raise MeshError(
-                f"surface {regions[index]} has elements of gmsh's type {kind}; "
-                "allowed are triangles of 3 or 6 nodes and quads of 4, 8 or 9"
-            )
-    if not blocks:
+    region, kinds, tags, nodes = [], set(), [], []
+    for index, name in enumerate(regions):
+        for kind, block_tags, block_nodes in surfaces[name]:
+            if kind not in _ELEMENTS:
+                raise MeshError(
+                    f"surface {name} has elements of gmsh's type {kind}; "
+                    "allowed are triangles of 3 or 6 nodes and quads of 4, 8 or 9"
+                )
+            kinds.add(_ELEMENTS[kind])
+            region += [index] * len(block_tags)
+            tags.append(block_tags)
+            nodes.append(block_nodes)
+    if not kinds:
         raise MeshError(
             f"no element is in {_listed(regions)}; "
             "each layer must be a physical surface with elements"
         )
-    kinds = sorted({_ELEMENTS[kind] for _, kind, *_ in blocks})
     if len(kinds) > 1:
-        raise MeshError(f"mixes {' and '.join(kinds)}; one kind of element is allowed")
-    tags = np.concatenate([tags for _, _, tags, _ in blocks])
-    if len(np.unique(tags)) < len(tags):
+        raise MeshError(f"mixes {' and '.join(sorted(kinds))}; one kind of element is allowed")
+    number = len(np.unique(np.concatenate(tags)))
+    if number < len(region):
         raise MeshError(f"an element is in two of {', '.join(regions)}; one layer each is allowed")
-    if len(tags) < count:
+    if number < count:
         others = [name for name in surfaces if name not in regions]
         more = f" (the mesh also has {', '.join(others)})" if others else ""
         raise MeshError(
-            f"{count - len(tags)} surface elements are in none of {', '.join(regions)}; "
+            f"{count - number} surface elements are in none of {', '.join(regions)}; "
             f"each must be in one{more}"
         )
-    cells = [nodes.reshape(len(tags), -1) for _, _, tags, nodes in blocks]
-    region = np.repeat([index for index, *_ in blocks], [len(tags) for _, _, tags, _ in blocks])
-    return kinds[0], np.concatenate(cells), region.astype(np.int8)
+    cells = np.concatenate(nodes).reshape(number, -1)
+    return kinds.pop(), cells, np.array(region, np.int8)
 
 
 def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -183,68 +186,58 @@ def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.
     return np.concatenate((points, centre)), np.column_stack((cells, number))
 
 
-def _facets(mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _facets(mesh: PadMesh, lines: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The named boundary facets, material on the right, from the end nodes of the file's line
     elements.
     """
     edges = element_edges(mesh.cells, mesh.element)
-    n = len(mesh.points)
+    keys, first, uses = np.unique(edge_keys(edges), return_index=True, return_counts=True)
+    boundary = edges[first[uses == 1]][:, [1, 0, *range(2, edges.shape[1])]]
+    number, free = pd.Index(keys[uses == 1]), np.ones(len(boundary), dtype=bool)
 
-    def keys(ends: np.ndarray) -> np.ndarray:
-        """A number for two end nodes, in whichever order."""
-        return ends.min(axis=1).astype(np.int64) * n + ends.max(axis=1)
-
-    def place(key: int) -> str:
-        x, y = mesh.points[[key // n, key % n]].mean(axis=0) * 1e3
+    def place(ends: np.ndarray) -> str:
+        x, y = mesh.points[ends[:2]].mean(axis=0) * 1e3
         return f"({x:.3f}, {y:.3f}) mm"
 
-    unique, first, uses = np.unique(keys(edges[:, :2]), return_index=True, return_counts=True)
-    boundary, numbers = unique[uses == 1], first[uses == 1]
-    free = np.ones(len(boundary), dtype=bool)
-
-    def facets(chosen: np.ndarray) -> np.ndarray:
-        return edges[numbers[chosen]][:, [1, 0, *range(2, edges.shape[1])]]
-
     curves = {}
-    for name, lines in pairs.items():
-        wanted = np.unique(keys(lines))
-        chosen = np.searchsorted(boundary, wanted)
-        there = chosen < len(boundary)
-        there[there] = (boundary[chosen[there]] == wanted[there]) & free[chosen[there]]
+    for name, ends in lines.items():
+        wanted, first = np.unique(edge_keys(ends), return_index=True)
+        chosen = number.get_indexer(wanted)
+        there = (chosen >= 0) & free[chosen]
         if not there.all():
             raise MeshError(
-                f"curve {name} has an edge at {place(wanted[np.argmin(there)])} "
+                f"curve {name} has an edge at {place(ends[first[np.argmin(there)]])} "
                 "that is not on the boundary, or in two curves; "
-                f"{', '.join(pairs)} must be boundary edges, each in one curve"
+                f"{', '.join(lines)} must be boundary edges, each in one curve"
             )
         free[chosen] = False
-        curves[name] = facets(chosen)
-    if free.any():
+        curves[name] = boundary[chosen]
+    unnamed = boundary[free]
+    if len(unnamed):
         # two edges at one place are a gap between elements that do not share their nodes
-        middles = mesh.points[np.column_stack(np.divmod(boundary[free], n))].mean(axis=1)
+        middles = mesh.points[unnamed[:, :2]].mean(axis=1)
         double = KDTree(middles).query_pairs(_SAME_PLACE * np.ptp(mesh.points[:, 0]))
         if double:
             raise MeshError(
-                f"{2 * len(double)} edges, the first at {place(boundary[free][min(double)[0]])}, "
+                f"{2 * len(double)} edges, the first at {place(unnamed[min(double)[0]])}, "
                 "lie twice at the same place; "
                 "elements must share their nodes (are the layers joined?)"
             )
-        curves[UNNAMED] = facets(np.flatnonzero(free))
+        curves[UNNAMED] = unnamed
     return curves
 
 
 def _in_order(skin: np.ndarray) -> np.ndarray:
     """The skin's facets from left to right, end to start."""
-    follows = {start: index for index, start in enumerate(skin[:, 0].tolist())}
-    first = set(follows) - set(skin[:, 1].tolist())
-    order = []
-    node = next(iter(first), None)
-    while node in follows:
-        order.append(follows.pop(node))
-        node = int(skin[order[-1], 1])
-    if len(first) != 1 or follows:
+    after = {facet[0]: facet for facet in skin.tolist()}
+    first = set(after) - set(skin[:, 1].tolist())
+    order, node = [], next(iter(first), None)
+    while node in after:
+        order.append(after.pop(node))
+        node = order[-1][1]
+    if len(first) != 1 or after:
         raise MeshError("curve skin must be one line with two ends")
-    return skin[order]
+    return np.array(order, skin.dtype)
 
 
 def _is_symmetric(mesh: PadMesh) -> bool:
@@ -257,12 +250,13 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     if distance.max() > near or len(np.unique(image)) < len(image):
         return False
 
-    def rows(labels: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-        return np.unique(np.column_stack((labels, np.sort(nodes, axis=1))), axis=0)
+    def rows(nodes: np.ndarray, *labels: np.ndarray) -> np.ndarray:
+        return np.unique(np.column_stack((np.sort(nodes, axis=1), *labels)), axis=0)
 
-    groups = [(mesh.region, mesh.cells)]
-    groups += [(np.zeros(len(facets), int), facets) for facets in mesh.curves.values()]
-    return all(np.array_equal(rows(*group), rows(group[0], image[group[1]])) for group in groups)
+    return all(
+        np.array_equal(rows(nodes, *labels), rows(image[nodes], *labels))
+        for nodes, *labels in ((mesh.cells, mesh.region), *zip(mesh.curves.values()))
+    )
 
 
 def read_specimen_mesh(specimen) -> PadMesh:
@@ -288,13 +282,7 @@ def read_specimen_mesh(specimen) -> PadMesh:
             f"{specimen.mesh}: no material for {', '.join(bare)}; "
             "specimen.layers must name each surface of the mesh"
         )
-    for name in specimen.stated:
-        if name not in mesh.regions:
-            known = ", ".join(mesh.regions)
-            raise MeshError(
-                f"{specimen.mesh}: layer {name} is no surface of the mesh; "
-                f"its physical surfaces are {known}"
-            )
+    _check_names(specimen.stated, mesh.regions, f"{specimen.mesh}: layer ", "surface")
     return mesh
 
 
@@ -390,11 +378,11 @@ def _mesh_of(
     check_orientation(mesh)
     pairs = {}
     for name in dict.fromkeys((SKIN, *held, *free)):
-        if not lines[name]:
+        ends = [nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]]
+        if not ends:
             raise MeshError(
                 f"curve {name} has no edges; a curve along the elements' edges must be there"
             )
-        ends = [nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]]
         ends = np.concatenate(ends)
         if not np.isin(ends, used).all():
             raise MeshError(

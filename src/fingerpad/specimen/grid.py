@@ -51,7 +51,9 @@ def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarra
     return np.unique(np.clip(grid, 0.0, length))
 
 
-def graded(grid: np.ndarray, wanted, ends, focus, growth: float, rounding) -> np.ndarray:
+def graded(
+    grid: np.ndarray, wanted, ends, focus, growth: float, rounding=lambda low: np.ceil
+) -> np.ndarray:
     """Division points of the range between the first and the last of ``ends``, with those among
     them.
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
-from fingerpad.specimen.pad import SKIN, MeshError, PadMesh, element_edges
+from fingerpad.specimen.pad import SKIN, MeshError, PadMesh, edge_keys, element_edges
 
 _SLIT = np.radians(5.0)
 """Angle of a gap between two boundary edges at a node, below which it is a slit between layers that
@@ -29,10 +30,7 @@ def check_joined(mesh: PadMesh) -> None:
     """
     edges = element_edges(mesh.cells, mesh.element)
     owner = np.tile(np.arange(len(mesh.cells)), len(edges) // len(mesh.cells))
-    _, number, uses = np.unique(
-        np.sort(edges[:, :2], axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    number = number.reshape(-1)
+    _, number, uses = np.unique(edge_keys(edges), return_inverse=True, return_counts=True)
     order = np.argsort(number, kind="stable")
     shared = order[uses[number[order]] == 2].reshape(-1, 2)
     _check_pieces(mesh, owner[shared])
@@ -69,41 +67,27 @@ def _check_boundary(mesh: PadMesh, edges: np.ndarray, owner: np.ndarray) -> None
     if edges.shape[1] == 3:  # along their middles
         edges, owner = np.concatenate([edges[:, [0, 2]], edges[:, [2, 1]]]), np.tile(owner, 2)
     ends = mesh.points[edges]
-    first, second = _near(ends)
+    # each with those that are shorter and near enough to touch it
+    middles, length = ends.mean(axis=1), np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    near = KDTree(middles).query_ball_point(middles, 1.01 * length)
+    first = np.repeat(np.arange(len(near)), [len(others) for others in near])
+    second, rank = np.concatenate(near).astype(int), np.argsort(np.argsort(length))
+    shorter = rank[second] < rank[first]
+    first, second = first[shorter], second[shorter]
     a, b = edges[first], edges[second]
-    common = (a[:, :, None] == b[:, None, :]).any(axis=(1, 2))
-    apart = ~common
-    wrong = np.zeros(len(first), bool)
+    apart = ~(a[:, :, None] == b[:, None, :]).any(axis=(1, 2))
+    wrong = np.empty(len(first), bool)
     wrong[apart] = _touch(ends[first[apart]], ends[second[apart]])
-    wrong[common] = _slit(mesh.points, a[common], b[common])
+    wrong[~apart] = _slit(mesh.points, a[~apart], b[~apart])
     if wrong.any():
-        k = int(np.argmax(wrong))
-        x, y = ends[[first[k], second[k]]].mean(axis=(0, 1)) * 1e3
-        layers = " and ".join(
-            dict.fromkeys(mesh.regions[mesh.region[owner[i]]] for i in (first[k], second[k]))
-        )
+        pair = [first[wrong][0], second[wrong][0]]
+        x, y = ends[pair].mean(axis=(0, 1)) * 1e3
+        layers = dict.fromkeys(mesh.regions[k] for k in mesh.region[owner[pair]])
         raise MeshError(
-            f"boundary edges of layer {layers} lie on each other at ({x:.3f}, {y:.3f}) mm "
-            f"({int(wrong.sum())} such pairs): "
+            f"boundary edges of layer {' and '.join(layers)} lie on each other at "
+            f"({x:.3f}, {y:.3f}) mm ({wrong.sum()} such pairs): "
             f"a node of one element is on an edge of another; {_JOIN}"
         )
-
-
-def _near(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of segments (n, 2, 2) whose boxes, made a little larger, overlap."""
-    slack = _ON * np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None]
-    low, high = ends.min(axis=1) - slack, ends.max(axis=1) + slack
-    along = int(np.argmax(np.ptp(ends.reshape(-1, 2), axis=0)))
-    order = np.argsort(low[:, along], kind="stable")
-    last = np.searchsorted(low[order, along], high[order, along], side="right")
-    count = np.maximum(last - np.arange(len(order)) - 1, 0)
-    first = np.repeat(np.arange(len(order)), count)
-    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
-    first, second = order[first], order[second]
-    meet = (low[first, 1 - along] <= high[second, 1 - along]) & (
-        low[second, 1 - along] <= high[first, 1 - along]
-    )
-    return first[meet], second[meet]
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -112,25 +96,25 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def _touch(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether segments (n, 2, 2) without a common node cross, or one's end lies on the other."""
-    wa, wb = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0]
-    to_b = [_cross(wa, b[:, k] - a[:, 0]) for k in (0, 1)]
-    to_a = [_cross(wb, a[:, k] - b[:, 0]) for k in (0, 1)]
-    out = (to_b[0] * to_b[1] < 0) & (to_a[0] * to_a[1] < 0)
-    for way, start, points in ((wa, a[:, 0], b), (wb, b[:, 0], a)):
-        square = (way**2).sum(axis=1)
+    crossed, touching = np.ones(len(a), bool), np.zeros(len(a), bool)
+    for one, other in ((a, b), (b, a)):
+        start, way = one[:, 0], one[:, 1] - one[:, 0]
+        square, beside = (way**2).sum(axis=1), []
         for k in (0, 1):
-            share = np.clip(((points[:, k] - start) * way).sum(axis=1) / square, 0, 1)
-            off = np.hypot(*(points[:, k] - start - share[:, None] * way).T)
-            out |= off < _ON * np.sqrt(square)
-    return out
+            arm = other[:, k] - start
+            beside.append(_cross(way, arm))
+            share = np.clip((arm * way).sum(axis=1) / square, 0, 1)
+            touching |= np.hypot(*(arm - share[:, None] * way).T) < _ON * np.sqrt(square)
+        crossed &= beside[0] * beside[1] < 0
+    return crossed | touching
 
 
 def _slit(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether edges (n, 2) with one common node, their elements to the left, part there by less
     than a slit.
     """
-    ends_at = np.array([(a[:, i] == b[:, j]) for i in (0, 1) for j in (0, 1)])
-    i, j = np.divmod(np.argmax(ends_at, axis=0), 2)
+    same = (a[:, :, None] == b[:, None, :]).reshape(-1, 4)
+    i, j = np.divmod(np.argmax(same, axis=1), 2)  # which end of each is the common node
     rows = np.arange(len(a))
     start = points[a[rows, i]]
     u, v = points[a[rows, 1 - i]] - start, points[b[rows, 1 - j]] - start

@@ -24,7 +24,7 @@ from fingerpad.specimen.grid import (
 )
 from fingerpad.specimen.outline import OutlineCurve, OutlineLike, curve_of
 from fingerpad.specimen.pad import MeshError, MeshSize
-from fingerpad.specimen.ridges import RidgedPad
+from fingerpad.specimen.ridges import RidgedPad, wave_of
 
 PER_PITCH = 8  # elements from one ridge to the next, at least
 # rows within a ridge's height of the interface, unless the ridges are low (see `_interface_edge`)
@@ -126,22 +126,22 @@ class Layout:
         return points
 
 
-def ridge_column(size: MeshSize, ridged: RidgedPad) -> float:
+def ridge_column(size: MeshSize, ridges: Any) -> float:
     """Edge (m) along the skin of the columns from which the ridges' are made."""
-    return min(size.skin_edge, 3.0 * ridged.wave / PER_PITCH)
+    return min(size.skin_edge, 3.0 * wave_of(ridges.inner) / PER_PITCH)
 
 
-def apex_column(outline: OutlineLike, size: MeshSize, ridges: Any) -> float:
+def apex_column(size: MeshSize, ridges: Any) -> float:
     """Edge (m) along the skin of the columns at the apex from which the ridges' are made: these are
     a third as wide.
     """
     focus = [edge for x, edge in size.focus if x == 0]
-    return min([ridge_column(size, RidgedPad(outline, ridges)), *focus])
+    return min([ridge_column(size, ridges), *focus])
 
 
-def skin_edge(outline: OutlineLike, size: MeshSize, ridges: Any, edge: float) -> float:
+def skin_edge(size: MeshSize, ridges: Any, edge: float) -> float:
     """Edge (m) along the skin under the apex that would be `edge` in the plain mesh."""
-    edge = min(edge, ridge_column(size, RidgedPad(outline, ridges)))
+    edge = min(edge, ridge_column(size, ridges))
     return edge / 3 if ridges.outer is not None else edge
 
 

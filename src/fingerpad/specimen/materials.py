@@ -1,7 +1,7 @@
 """Elastic constants of the layers and the Prony series, in the form the mechanics wants them."""
 
 from dataclasses import dataclass
-from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,23 +17,10 @@ class Prony:
         Shares of the instantaneous modulus that relax, each >= 0, sum < 1.
     tau
         Their time constants, s, each > 0.
-
-    Raises
-    ------
-    ValueError
-        Lengths differ, or a value is out of range.
     """
 
     g: tuple[float, ...] = ()
     tau: tuple[float, ...] = ()
-
-    def __post_init__(self):
-        if len(self.g) != len(self.tau):
-            raise ValueError("a Prony series needs one tau for every g")
-        if any(not g >= 0 for g in self.g) or not sum(self.g) < 1:
-            raise ValueError("Prony shares must be >= 0 and sum to less than 1")
-        if any(not (tau > 0 and isfinite(tau)) for tau in self.tau):
-            raise ValueError("Prony time constants must be positive")
 
     def __bool__(self) -> bool:
         return any(g > 0 for g in self.g)
@@ -56,8 +43,7 @@ class Prony:
         )
 
 
-@dataclass(frozen=True)
-class Moduli:
+class Moduli(NamedTuple):
     """Per region: long-term shear modulus, instantaneous shear modulus and the (time-independent)
     bulk modulus, Pa.
 
@@ -75,18 +61,9 @@ def moduli(
 ) -> Moduli:
     """Long-term and instantaneous moduli of regions whose E (Pa) and nu describe one of the two
     states.
-
-    Raises
-    ------
-    ValueError
-        E <= 0, nu outside (-1, 1/2), or an unknown state.
     """
     e, nu = np.asarray(youngs_modulus, dtype=float), np.asarray(poisson_ratio, dtype=float)
-    if not (np.all(e > 0) and np.all(nu > -1) and np.all(nu < 0.5)):
-        raise ValueError("E must be positive and -1 < nu < 0.5")
     shear, bulk = e / (2 * (1 + nu)), e / (3 * (1 - 2 * nu))
     if described_state == "long_term":
         return Moduli(shear, shear / prony.g_infinity, bulk)
-    if described_state == "instantaneous":
-        return Moduli(shear * prony.g_infinity, shear, bulk)
-    raise ValueError(f"moduli describe long_term or instantaneous, not {described_state!r}")
+    return Moduli(shear * prony.g_infinity, shear, bulk)

@@ -5,6 +5,7 @@ skin.
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fingerpad.specimen.outline import OutlineLike, bisect, curve_of
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
@@ -15,16 +16,14 @@ _TOO_DEEP = (
 )
 
 
-def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
-    """Points (k, 2) m along the skin, following curved edges."""
-    facets, points = mesh.curves["skin"], mesh.points
-    s = np.linspace(-1, 1, per_edge)
+def _fine_skin(mesh: PadMesh) -> np.ndarray:
+    """Points (k, 2) m along the skin of a whole mesh, following curved edges."""
+    facets, s = mesh.curves["skin"], np.linspace(-1, 1, 16)
     if facets.shape[1] == 3:
         shape = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s])
     else:
         shape = np.stack([(1 - s) / 2, (1 + s) / 2])
-    fine = np.einsum("as,fai->fsi", shape, points[facets]).reshape(-1, 2)
-    return np.vstack([fine[::-1] * [-1, 1], fine]) if mesh.half else fine
+    return np.einsum("as,fai->fsi", shape, mesh.points[facets]).reshape(-1, 2)
 
 
 def touched_side(skin: np.ndarray) -> np.ndarray:
@@ -82,21 +81,15 @@ def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
     MeshError
         The skin does not cross x = 0.
     """
-    x, y = mesh.points[skin_chain(mesh)].T
-    if not (x.min() <= 0 <= x.max()):
-        raise MeshError(
-            "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
-        )
-    at = middle + (1 if middle <= 0 else -1) * 1e-6 * np.ptp(
-        mesh.points[:, 0]
-    )  # beside the middle, where nodes often are
+    _skin_over_zero(mesh)
+    # beside the middle, where nodes often are
+    at = middle + (1 if middle <= 0 else -1) * 1e-6 * np.ptp(mesh.points[:, 0])
     start, end = mesh.points[element_edges(mesh.cells, mesh.element)[:, :2].T]
-    count = len(mesh.cells)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (at - start[:, 0]) / (end[:, 0] - start[:, 0])
-    height = np.where(
-        (share >= 0) & (share <= 1), start[:, 1] + share * (end[:, 1] - start[:, 1]), np.nan
-    ).reshape(-1, count)
+    height = start[:, 1] + share * (end[:, 1] - start[:, 1])
+    height[~((share >= 0) & (share <= 1))] = np.nan
+    height = height.reshape(-1, len(mesh.cells))
     crossed = np.count_nonzero(np.isfinite(height), axis=0) >= 2
     low, high = np.nanmin(height[:, crossed], axis=0), np.nanmax(height[:, crossed], axis=0)
     near = 1e-6 * np.ptp(mesh.points[:, 1])
@@ -111,16 +104,16 @@ def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
     return list(layers.items())
 
 
-def _near_apex(mesh: PadMesh, x: np.ndarray) -> tuple[np.ndarray, float]:
+def _near_apex(x: np.ndarray) -> tuple[np.ndarray, float]:
     """Which of the skin's nodes at ``x`` (ns,) m are near x = 0, and how far (m) that reaches."""
-    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
+    reach = 0.075 * np.ptp(x)
     return np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min()), reach
 
 
 def apex_radius(mesh: PadMesh) -> float:
     """Radius of curvature (m) of the skin at x = 0; 1000 m for a flat or hollow one."""
     x, y = mesh.points[skin_chain(mesh)].T
-    near, _ = _near_apex(mesh, x)
+    near, _ = _near_apex(x)
     if len(np.unique(x[near])) < 3:
         return 1e3
     return float(1 / max(-2 * np.polyfit(x[near], y[near], 2)[0], 1e-3))
@@ -136,7 +129,7 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
         There is no skin, or no bone below it, at x = 0.
     """
     x, y = _skin_over_zero(mesh)
-    near, reach = _near_apex(mesh, x)
+    near, reach = _near_apex(x)
     top = y[near].max()
     bone = mesh.points[np.unique(mesh.curves["bone"])]
     aside = np.abs(bone[:, 0])
@@ -180,8 +173,8 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     if not depths.size:
         return np.zeros((0, 2))
     skin = _fine_skin(mesh)
-    order = np.argsort(skin[:, 0])
-    upper = skin[order[touched_side(skin)[order]]]
+    upper = skin[touched_side(skin)]
+    upper = upper[np.argsort(upper[:, 0])]
     beside = offsets[(offsets < upper[0, 0]) | (offsets > upper[-1, 0])]
     if len(beside):
         first, last = upper[[0, -1], 0] * 1e3
@@ -191,16 +184,10 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
         )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
 
-    # of the skin (k,) all that may be as near as that, the same number (w) for every point
-    first, last = (
-        np.searchsorted(skin[order, 0], offsets + side * 1.01 * depths) for side in (-1, 1)
-    )
-    x, y = skin[
-        order[np.minimum(first[:, None] + np.arange(max(1, np.max(last - first))), len(skin) - 1)]
-    ].transpose(2, 0, 1)
+    tree = KDTree(skin)
 
     def below(height):
-        return np.hypot(x - offsets[:, None], y - height[:, None]).min(axis=1)
+        return tree.query(np.column_stack([offsets, height]))[0]
 
     low, high = bisect(lambda height: below(height) > depths, high - 4 * depths, high)
     found = (low + high) / 2

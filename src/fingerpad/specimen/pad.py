@@ -185,26 +185,25 @@ class PadMesh:
         """
         if KINDS[self.element].quadratic:
             return self
-        edges = element_edges(self.cells, self.element)
-        pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
-        first, count, index = len(self.points), len(self.cells), index.reshape(-1)
-        known = dict(zip(map(tuple, pairs.tolist()), range(len(pairs)), strict=True))
-        middles = self.points[pairs].mean(axis=1)
-        skin = self.curves[SKIN]
-        sides = [known[min(pair), max(pair)] for pair in skin.tolist()]
-        owner = np.empty(len(pairs), dtype=np.int64)
-        owner[index] = np.arange(len(edges)) % count
-        areas = _areas(self.points[self.cells[owner[sides]]])
-        middles[sides] += _bulge(self.points[skin], areas)
+        edges, count = element_edges(self.cells, self.element), len(self.cells)
+        ends = np.concatenate([edges, *self.curves.values()])
+        _, first, number = np.unique(edge_keys(ends), return_index=True, return_inverse=True)
+        middles = self.points[ends[first]].mean(axis=1)
+        lengths = [len(edges), *map(len, self.curves.values())]
+        of_cells, *of_curves = np.split(number, np.cumsum(lengths)[:-1])
+        owner = np.empty(len(middles), dtype=np.int64)
+        owner[of_cells] = np.arange(len(edges)) % count
+        sides = dict(zip(self.curves, of_curves, strict=True))
+        skin = sides[SKIN]
+        areas = _areas(self.points[self.cells[owner[skin]]])
+        middles[skin] += _bulge(self.points[self.curves[SKIN]], areas)
         points = [self.points, middles]
-        cells = [self.cells, first + index.reshape(-1, count).T]
+        cells = [self.cells, len(self.points) + of_cells.reshape(-1, count).T]
         if self.element == "quad4":
             points.append(self.points[self.cells].mean(axis=1))
-            cells.append(first + len(pairs) + np.arange(count)[:, None])
+            cells.append(len(self.points) + len(middles) + np.arange(count)[:, None])
         curves = {
-            name: np.array(
-                [(a, b, first + known[min(a, b), max(a, b)]) for a, b in facets.tolist()], np.int32
-            ).reshape(-1, 3)
+            name: np.column_stack((facets, len(self.points) + sides[name])).astype(np.int32)
             for name, facets in self.curves.items()
         }
         return replace(
@@ -246,9 +245,18 @@ def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
     middle].
     """
     corners = KINDS[element].corners
-    quadratic = cells.shape[1] > corners
-    sides = [(side, (side + 1) % corners, corners + side) for side in range(corners)]
-    return np.concatenate([cells[:, side[: 3 if quadratic else 2]] for side in sides])
+    start = np.arange(corners)
+    columns = [start, (start + 1) % corners, start + corners]
+    columns = np.stack(columns[: 3 if cells.shape[1] > corners else 2])
+    return cells[:, columns].transpose(2, 0, 1).reshape(-1, len(columns))
+
+
+def edge_keys(ends: np.ndarray) -> np.ndarray:
+    """A number (n,) for the two end nodes of edges (n, 2 or more), in whichever order; they rise as
+    the pairs do.
+    """
+    low, high = np.sort(ends[:, :2], axis=1).astype(np.int64).T
+    return (low << 32) + high
 
 
 def skin_chain(mesh: PadMesh) -> np.ndarray:

@@ -14,11 +14,6 @@ from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
 
 
-def _corners(mesh: PadMesh) -> np.ndarray:
-    """Reference coordinates (corners, 2) of the corners of the elements."""
-    return KINDS[mesh.element].element.refdom.p.T
-
-
 def _sample_points(mesh: PadMesh) -> np.ndarray:
     """Gauss points (m, 2) of the reference element: 3 in triangles, 3 x 3 in quads."""
     kind = KINDS[mesh.element]
@@ -43,9 +38,9 @@ def counter_clockwise(mesh: PadMesh) -> PadMesh:
     return replace(mesh, cells=cells)
 
 
-def check_orientation(mesh: PadMesh, name: str = "") -> None:
+def check_orientation(mesh: PadMesh, name: str = "", advice: str = "") -> None:
     """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss
-    point.
+    point, and what would help.
     """
     points = np.concatenate([_sample_points(mesh), KINDS[mesh.element].rule(5)[0]])
     determinant = np.linalg.det(jacobians(mesh, points))
@@ -53,11 +48,12 @@ def check_orientation(mesh: PadMesh, name: str = "") -> None:
     if len(bad):
         what = "runs clockwise" if determinant[bad[0]].max() <= 0.0 else "is folded"
         x, y = mesh.points[mesh.cells[bad[0]]].mean(axis=0) * 1e3
-        message = (
-            f"element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} ({len(bad)} of {len(mesh.cells)}); "
-            "elements must be counter-clockwise with a positive Jacobian"
+        name, advice = name and f"{name}: ", advice and f"; {advice} are allowed"
+        raise MeshError(
+            f"{name}element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} "
+            f"({len(bad)} of {len(mesh.cells)}); elements must be counter-clockwise with a "
+            f"positive Jacobian{advice}"
         )
-        raise MeshError(f"{name}: {message}" if name else message)
 
 
 def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
@@ -67,7 +63,8 @@ def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
     The determinant of the curved element's tangents over the product of their lengths; in a
     triangle over the largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
     """
-    tangents = jacobians(mesh, np.concatenate([_corners(mesh), _sample_points(mesh)]))
+    corners = KINDS[mesh.element].element.refdom.p.T
+    tangents = jacobians(mesh, np.concatenate([corners, _sample_points(mesh)]))
     lengths = np.hypot(tangents[..., 0], tangents[..., 1])
     scale = lengths[..., 0] * lengths[..., 1]
     if mesh.element.startswith("tri"):
@@ -96,10 +93,9 @@ def quality_table(meshes: Mapping[str, PadMesh]) -> pd.DataFrame:
     """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian
     (1).
     """
-    rows = [
+    table = pd.DataFrame(
         {"mesh": name, "element": mesh.element, **quality_of(mesh)} for name, mesh in meshes.items()
-    ]
-    table = pd.DataFrame(rows)
+    )
     table["smallest_edge_m"] *= 1e6
     names = {
         "smallest_edge_m": "smallest edge (um)",

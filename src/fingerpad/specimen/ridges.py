@@ -15,10 +15,8 @@ import numpy as np
 
 from fingerpad.specimen.outline import OutlineLike, curve_of
 
-_POWER = {
-    "smooth": 1,
-    "sharp": 2,
-}  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
+# of cos(pi u): a sharp tip has half a smooth one's radius of curvature
+_POWER = {"smooth": 2, "sharp": 4}
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}
 # pitches by which the mesh still follows the ridges above their valleys and below their tips
 _REACH = 0.25
@@ -31,9 +29,9 @@ def ridge_shape(u: np.ndarray, shape: str, limiting: float = 0.0) -> np.ndarray:
     is half as wide.
     """
     if not limiting:
-        return np.cos(np.pi * u) ** (2 * _POWER[shape])
+        return np.cos(np.pi * u) ** _POWER[shape]
     tips = 0.5 * (1.0 + limiting) + 0.5 * (1.0 - limiting) * np.cos(2.0 * np.pi * u)
-    return tips * np.cos(2.0 * np.pi * u) ** (2 * _POWER[shape])
+    return tips * np.cos(2.0 * np.pi * u) ** _POWER[shape]
 
 
 def mean_shape(shape: str, limiting: float = 0.0) -> float:
@@ -70,11 +68,10 @@ class RidgedPad:
     """
 
     def __init__(self, outline: OutlineLike, ridges: Any, corneum: float = 0.0):
-        self.curve = curve_of(outline)
+        self.curve, self.corneum = curve_of(outline), corneum
         self.inner, self.outer, self.half_width = ridges.inner, ridges.outer, ridges.half_width
         inner = self.inner
-        self.pitch, self.corneum = inner.pitch, corneum
-        self.wave = wave_of(inner)
+        self.pitch, self.wave = inner.pitch, wave_of(inner)
         self.extent = self.half_width + self.pitch
         if inner.phase in ("tip", "valley"):
             self.tip = 0.0 if inner.phase == "tip" else 0.5 * inner.pitch

@@ -17,7 +17,7 @@ import numpy as np
 
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.grid import graded, with_middles
-from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh
+from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation
 
 _COARSEST = 8.0  # largest edge along the surface and across the layers, in those under the contact
@@ -29,10 +29,6 @@ _RING = 0.62
 _TURN = 0.2  # largest angle in radians that an edge along a half-round may turn by
 _GRID = 8001  # places at which edges are asked for
 _QUAD = ((0, 2), (2, 2), (2, 0), (0, 0), (1, 2), (2, 1), (1, 0), (0, 1), (1, 1))
-
-
-def _always_up(_: float):
-    return np.ceil
 
 
 def _columns(stack: Any, size: MeshSize) -> np.ndarray:
@@ -54,7 +50,6 @@ def _columns(stack: Any, size: MeshSize) -> np.ndarray:
         ends,
         [(s, edge) for s, edge in zip(places.tolist(), edges, strict=True) if s < length],
         size.growth,
-        _always_up,
     )
 
 
@@ -73,7 +68,7 @@ def _rows(stack: Any, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndar
             edge = np.where((d >= low) & (d <= high), np.minimum(edge, (high - low) / _ROWS), edge)
         return edge
 
-    rows = graded(np.linspace(0.0, depth, _GRID), wanted, ends, (), size.growth, _always_up)
+    rows = graded(np.linspace(0.0, depth, _GRID), wanted, ends, (), size.growth)
     middle = 0.5 * (rows[1:] + rows[:-1])
     return rows, np.minimum(np.searchsorted(bounds, middle), len(bounds) - 1)
 
@@ -185,8 +180,5 @@ def build_stack_mesh(stack: Any, size: MeshSize) -> PadMesh:
         regions=tuple(stack.names),
         fixed=("base",),
     )
-    try:
-        check_orientation(mesh, "specimen")
-    except MeshError as error:
-        raise MeshError(f"{error}; thicker layers or a smaller skin_edge are allowed") from None
+    check_orientation(mesh, "specimen", "thicker layers or a smaller skin_edge")
     return mesh

@@ -73,16 +73,17 @@ def read_course(path: str | Path) -> Course:
         )
     values = np.maximum(values, 0.0)
     within = max(EXACT * values.max(), NOISE * _noise(values))
-    corners = corners_of(times - times[0], values, within)
+    times = times - times[0]
+    corners = corners_of(times, values, within)
     if len(corners) > MOST_PIECES:
         raise TableError(
             f"has {len(corners)} pieces that differ by more than its noise",
             f"up to {MOST_PIECES}; a shorter one",
         )
-    times = times - times[0]
-    return Course(
-        tuple(times[corners].tolist()), tuple(_fitted(times, values, corners).tolist()), kept
-    )
+    # between the corners, the pieces that fit all samples best
+    knots = np.pad(times[corners], 1, mode="edge")
+    fitted = np.maximum(make_lsq_spline(times, values, knots, k=1).c, 0.0)
+    return Course(tuple(times[corners].tolist()), tuple(fitted.tolist()), kept)
 
 
 def _noise(values: np.ndarray) -> float:
@@ -92,12 +93,6 @@ def _noise(values: np.ndarray) -> float:
     if len(values) < 20:
         return 0.0
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6))
-
-
-def _fitted(times: np.ndarray, values: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Values (k,) at corners of the pieces that fit all samples best, by least squares."""
-    knots = np.pad(times[corners], 1, mode="edge")
-    return np.maximum(make_lsq_spline(times, values, knots, k=1).c, 0.0)
 
 
 def corners_of(times: np.ndarray, values: np.ndarray, within: float) -> np.ndarray:

@@ -62,22 +62,18 @@ class Curve(Profile):
         ends = np.column_stack([self.x, self.y])
         chord = np.diff(ends, axis=0)
         length = np.hypot(*chord.T)
-        slope, turn = (
-            np.arctan2(chord[:, 1], chord[:, 0]),
-            np.arcsin(np.clip(self.bend * length / 2, -1, 1)),
-        )
+        slope = np.arctan2(chord[:, 1], chord[:, 0])
+        turn = np.arcsin(np.clip(self.bend * length / 2, -1, 1))
         if self.bend[0] or self.bend[-1] or np.any(np.abs(slope) + np.abs(turn) >= np.pi / 2):
             raise ValueError("a profile starts and ends with lines, and its arcs are single-valued")
         slopes = np.tan(np.abs(slope) + np.abs(turn))
         self._steepest, self.steepness = float(slopes.max()), float(slopes[self.own].max())
         self._tangent = chord / length[:, None]
-        self._side = np.where(
-            self.bend < 0, -1.0, 1.0
-        )  # of the skin, seen from the centre of an arc
         self._line = self.bend == 0
-        self._radius = np.abs(
-            np.divide(1.0, self.bend, out=np.zeros(len(length)), where=~self._line)
-        )
+        # of the skin, seen from the centre of an arc
+        self._side = np.where(self.bend < 0, -1.0, 1.0)
+        self._radius = np.zeros(len(length))
+        self._radius[~self._line] = np.abs(1.0 / self.bend[~self._line])
         to_chord = self._side * self._radius * np.cos(turn)
         self._centre = np.where(
             self._line[:, None],
@@ -86,7 +82,7 @@ class Curve(Profile):
         )  # of a line: its start
         self._reach = np.where(self._line, length, np.abs(turn))
         self._directions = slope - turn, slope + turn
-        before, after = (slope + turn)[:-1], (slope - turn)[1:]
+        after, before = self._directions[0][1:], self._directions[1][:-1]
         self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
         self._bisector = np.concatenate([[0.0], (before + after) / 2])
         self._ends = self.x, self.y, self._kink, self._bisector
@@ -190,12 +186,8 @@ class Curve(Profile):
 
     def _from_piece(self, points, piece):
         """Signed distance to a piece going on beyond its ends, with gradient and curvature."""
-        arm, tangent, side, line = (
-            points - self._centre[piece],
-            self._tangent[piece],
-            self._side[piece],
-            self._line[piece],
-        )
+        arm, tangent = points - self._centre[piece], self._tangent[piece]
+        side, line = self._side[piece], self._line[piece]
         across, length = np.einsum("ni,ni->n", arm, _normal(tangent)), np.hypot(*arm.T)
         distance = np.where(line, across, side * (length - self._radius[piece]))
         bend = side / np.maximum(length, 1e-15)
@@ -203,12 +195,11 @@ class Curve(Profile):
         return distance, gradient, np.where(line, 0.0, bend)
 
     def walls(self, points, reach, flat=0.0):
-        at, last = self._valleys[self._kink[self._valleys] < -flat], len(self.bend) - 1
+        at = self._valleys[self._kink[self._valleys] < -flat]
         if not len(at):
             return super().walls(points, reach, flat)
-        chord = np.where(
-            (np.arange(last + 1) == 0) | (np.arange(last + 1) == last), np.inf, np.diff(self.x)
-        )
+        chord = np.diff(self.x)
+        chord[[0, -1]] = np.inf  # these go on for ever
         room = np.minimum(reach, np.minimum(chord[at - 1], chord[at]))
         behind = np.clip(np.searchsorted(self.x[at], points[:, 0]), 1, max(len(at) - 1, 1))
         beside = np.minimum(np.stack([behind - 1, behind]), len(at) - 1)
@@ -229,24 +220,10 @@ class Curve(Profile):
         x, y = points.T
         height = self._height(x)
         within = self._farthest(x, y, height) * (1 + 1e-9) + 2 * self.overlap
-        distance, gradient, curvature = (
-            np.empty(len(points)),
-            np.empty(points.shape),
-            np.empty(len(points)),
-        )
+        out = np.empty(len(points)), np.empty(points.shape), np.empty(len(points))
         limits = self.overlap, self.touch
-        closest(
-            points,
-            y > height,
-            within,
-            self._ends,
-            self._pieces,
-            limits,
-            distance,
-            gradient,
-            curvature,
-        )
-        return distance, gradient, curvature
+        closest(points, y > height, within, self._ends, self._pieces, limits, *out)
+        return out
 
 
 def share_of_height(slope: float) -> float:

@@ -107,17 +107,6 @@ class Stepping(NamedTuple):
         )
 
 
-class Outlook(NamedTuple):
-    """What is known of a programme before it is run: s, N, m (NaN: not known), and has the pad
-    moved along the surface?
-    """
-
-    time: float = 0.0
-    force: float = 0.0
-    depth: float = 0.0
-    moved: bool = False
-
-
 class Leg(Strict):
     """Base of all legs.
 
@@ -168,25 +157,20 @@ class Leg(Strict):
 
     def path(
         self, at: Goal, last: float | None, reached: Reached, how: Stepping
-    ) -> tuple[np.ndarray, list[Goal], float | None]:
-        """Durations (s) of its steps and what each reaches, and the last of these durations (None:
-        steady).
+    ) -> tuple[np.ndarray, list[Goal]]:
+        """Durations (s) of its steps and what each reaches.
 
         Parameters
         ----------
         at
             What is prescribed when it begins.
         last
-            s, duration of the step before.
+            s, duration of the last step of the loading before; None: steady.
         reached
             Where the pad is.
         how
             Finely.
         """
-        raise NotImplementedError
-
-    def ahead(self, outlook: Outlook) -> Outlook:
-        """What is known after it."""
         raise NotImplementedError
 
     def jump(self, before: tuple[str, float] | None) -> tuple[str, str] | None:
@@ -212,23 +196,14 @@ its states would be off.
 
 def _ramp(
     kept: str, start: float, end: float, speed: float | None, at: Goal, how: Stepping
-) -> tuple[np.ndarray, list[Goal], float | None]:
+) -> tuple[np.ndarray, list[Goal]]:
     """The `path` of a leg that takes the force or the depth (`kept`) from one value to another;
     steady without a speed.
     """
     count = how.increments if speed is None else how.steps
-    last = None if speed is None else abs(end - start) / speed / count
     values = [start + (end - start) * k / count for k in range(1, count)] + [end]
     goals = [Goal(distance=at.distance, **{kept: value}) for value in values]
-    return np.full(count, STEADY if speed is None else last), goals, last
-
-
-def _after(outlook: Outlook, way: float, speed: float | None, **known: Any) -> Outlook:
-    """What is known after a way at a speed (a steady leg takes no time): `known`, and of force and
-    depth no more.
-    """
-    time = outlook.time + (0.0 if speed is None else abs(way) / speed)
-    return outlook._replace(**{"time": time, "force": math.nan, "depth": math.nan, **known})
+    return np.full(count, STEADY if speed is None else abs(end - start) / speed / count), goals
 
 
 class PressToForce(Leg):
@@ -254,10 +229,6 @@ class PressToForce(Leg):
         rate = self.rate and self.rate / length
         return _ramp("force", reached.force, self.press_to_force / length, rate, at, how)
 
-    def ahead(self, outlook):
-        way = self.press_to_force - outlook.force
-        return _after(outlook, way, self.rate, force=self.press_to_force)
-
 
 class PressToDepth(Leg):
     """Press until the indentation depth is reached."""
@@ -278,10 +249,6 @@ class PressToDepth(Leg):
     def path(self, at, last, reached, how):
         return _ramp("depth", reached.depth, self.press_to_depth, self.speed, at, how)
 
-    def ahead(self, outlook):
-        way = self.press_to_depth - outlook.depth
-        return _after(outlook, way, self.speed, depth=self.press_to_depth)
-
 
 class Hold(Leg):
     """Keep what the leg before prescribed."""
@@ -299,10 +266,7 @@ class Hold(Leg):
         sizes = np.array([self.hold])
         if how.timed:
             sizes = geometric(self.hold, how.steps, min(last or even, even))
-        return sizes, [at] * len(sizes), last
-
-    def ahead(self, outlook):
-        return outlook._replace(time=outlook.time + self.hold)
+        return sizes, [at] * len(sizes)
 
 
 class Lift(Leg):
@@ -322,11 +286,6 @@ class Lift(Leg):
 
     def path(self, at, last, reached, how):
         return _ramp("depth", reached.depth, reached.touching, self.speed, at, how)
-
-    def ahead(self, outlook):
-        # where the skin is touched depends on the surface there
-        left = math.nan if outlook.moved else 0.0
-        return _after(outlook, outlook.depth - left, self.speed, force=0.0, depth=left)
 
 
 class Follow(Leg):
@@ -402,11 +361,7 @@ class Follow(Leg):
             ends.append(float(value))
             before = value
         goals = [Goal(distance=at.distance, **{kept: end}) for end in ends]
-        return np.array(sizes), goals, sizes[-1]
-
-    def ahead(self, outlook):
-        times, values, kept = self.course
-        return _after(outlook, times[-1], 1.0, **{kept: values[-1]})
+        return np.array(sizes), goals
 
     def leaves(self, target):
         return f"press_to_{self.course.kept}", self.course.values[-1]
@@ -450,13 +405,8 @@ class Slide(Leg):
         kept = {self.keep: getattr(reached, self.keep) if value is None else value}
         goals = [Goal(distance=float(place), **kept) for place in places]
         if self.speed is None:
-            return np.full(len(places), STEADY), goals, None
-        sizes = np.abs(np.diff(places, prepend=at.distance)) / self.speed
-        return sizes, goals, float(sizes[-1])
-
-    def ahead(self, outlook):
-        kept = {self.keep: getattr(outlook, self.keep)}
-        return _after(outlook, self.slide, self.speed, moved=True, **kept)
+            return np.full(len(places), STEADY), goals
+        return np.abs(np.diff(places, prepend=at.distance)) / self.speed, goals
 
     def leaves(self, target):
         return target if target and target[0] == f"press_to_{self.keep}" else None
@@ -500,11 +450,7 @@ class StepAndRepeat(Leg):
     def path(self, at, last, reached, how):
         count = round(abs(self.step) / self.every)
         places = [at.distance + self.step * k / count for k in range(1, count + 1)]
-        goals = [at._replace(distance=place) for place in places]
-        return np.full(count, STEADY), goals, None
-
-    def ahead(self, outlook):
-        return outlook._replace(moved=True)
+        return np.full(count, STEADY), [at._replace(distance=place) for place in places]
 
 
 # --- programmes ---------------------------------------------------------------------------------
@@ -575,10 +521,17 @@ def end_time(legs: Sequence[Leg]) -> float | None:
     """Duration of a programme, s, steady legs taking none; None if a change of control leaves it
     open.
     """
-    outlook = Outlook()
+    time, at, reached, moved = 0.0, Goal(), Reached(0.0, 0.0), False
     for leg in legs:
-        outlook = leg.ahead(outlook)
-    return None if math.isnan(outlook.time) else outlook.time
+        sizes, goals = leg.path(at, None, reached, Stepping(1, 1.0, False, None))
+        time += float(sizes[~(sizes >= STEADY)].sum())
+        at, moved = goals[-1], moved or leg.along != 0
+        if leg.loads:  # what a leg does not prescribe is not known after it
+            force, depth = (math.nan if value is None else value for value in at[:2])
+            # where the skin is touched depends on the surface there
+            touching = math.nan if moved else 0.0
+            reached = Reached(0.0 if leg.releases else force, depth, touching)
+    return None if math.isnan(time) else time
 
 
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
@@ -645,7 +598,9 @@ def programme(
     time, at, last, wanted = 0.0, Goal(None, None, 0.0), None, sorted(snapshots)
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
-        sizes, goals, last = leg.path(at, last, reached, how)
+        sizes, goals = leg.path(at, last, reached, how)
+        if leg.loads:
+            last = float(sizes[-1]) if sizes[-1] < STEADY else None
         if stride > 1 and not leg.fresh:
             sizes, goals = _joined(sizes, goals, stride)
         passes = leg.strokes and parts is not None
@@ -698,9 +653,5 @@ def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarr
 
 
 def _between(before: Goal, after: Goal, share: float) -> Goal:
-    return Goal(
-        *(
-            None if b is None else b if a is None else a + share * (b - a)
-            for a, b in zip(before, after, strict=True)
-        )
-    )
+    ways = zip(before, after, strict=True)
+    return Goal(*(b if None in (a, b) else a + share * (b - a) for a, b in ways))

@@ -125,8 +125,10 @@ class Profile:
         return [0.0]
 
     def felt(self, edge: float) -> Profile:
-        """The profile without what may be noise to skin with nodes ``edge`` m apart."""
-        return self
+        """The profile without what may be noise to skin with nodes ``edge`` m apart: after the
+        longest of its cut-offs.
+        """
+        return self.at(self.cutoffs(edge)[-1], edge)
 
     def at(self, smoothing: float, edge: float) -> Profile:
         """The profile smoothed at a cut-off wavelength (m; 0: not at all), for skin with nodes

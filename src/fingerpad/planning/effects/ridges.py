@@ -110,14 +110,14 @@ def mesh(case: Case, size: MeshSize, edge: float) -> Meshed:
     size, error = _finer(case, size)
     check_size(case.scene, size, case.rules)
     _check_ridges(specimen.ridges, case.rules.most_nodes)
-    layered = (specimen.outline, size, specimen.ridges)
-    per_ridge, per_height = ridge_resolution(*layered, specimen.layers.stratum_corneum is not None)
-    middle = wave_of(specimen.ridges.inner) / (apex_column(*layered) / 3)
+    ridges, corneum = specimen.ridges, specimen.layers.stratum_corneum is not None
+    per_ridge, per_height = ridge_resolution(specimen.outline, size, ridges, corneum)
+    middle = wave_of(ridges.inner) / (apex_column(size, ridges) / 3)
     said = (
         f"{per_ridge:.1f} elements from ridge to ridge, {middle:.1f} in the middle, "
         f"{per_height} rows within their height of the interface"
     )
-    return Meshed(size, skin_edge(*layered, edge), error, said)
+    return Meshed(size, skin_edge(size, ridges, edge), error, said)
 
 
 def _finer(case: Case, size: MeshSize) -> tuple[MeshSize, float]:
@@ -126,7 +126,7 @@ def _finer(case: Case, size: MeshSize) -> tuple[MeshSize, float]:
     if not _felt(scene, rules):
         return size, 0.0
     ridges = scene.specimen.ridges
-    wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
+    wave, column = wave_of(ridges.inner), apex_column(size, ridges)
     by_hand = getattr(scene.accuracy, "skin_edge", None) is not None
     share = rules.ridge_stroked if case.moves else 1.0
     allowed = np.inf if by_hand else case.tolerance * share

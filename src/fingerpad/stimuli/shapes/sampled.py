@@ -243,12 +243,6 @@ class Points(Curve):
             return [0.0]
         return cutoffs(*self.samples, edge) if self.smooth == "auto" else [self.smooth]
 
-    def felt(self, edge):
-        """The profile without what may be noise to a skin with nodes ``edge`` m apart: after the
-        longest of its cut-offs.
-        """
-        return self.at(self.cutoffs(edge)[-1], edge)
-
     def at(self, smoothing, edge):
         points = smoothed(*self.samples, smoothing) if smoothing else self.samples
         felt = Points(*points, self.ends, self.smooth, rounding=edge)

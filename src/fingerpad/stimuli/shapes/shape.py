@@ -48,14 +48,9 @@ class CurvedShape(Shape):
         """Its surface."""
         raise NotImplementedError
 
-    def __copy__(self):
+    def model_copy(self, **how):
         """A copy may get other fields: it makes its own curve."""
-        copied = super().__copy__()
-        copied.__dict__.pop("curve", None)
-        return copied
-
-    def __deepcopy__(self, memo=None):
-        copied = super().__deepcopy__(memo)
+        copied = super().model_copy(**how)
         copied.__dict__.pop("curve", None)
         return copied
 
