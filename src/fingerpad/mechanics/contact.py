@@ -102,14 +102,6 @@ class Zone:
             minlength=len(self.condensed),
         )
 
-    def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along
-        ``direction`` (nz, 2).
-        """
-        out = matrix.copy()
-        kernels.bend(out, self._columns, self._values, direction, weight)
-        return out
-
     @property
     def movable(self) -> np.ndarray:
         """(nz,) bool: can the point move either way?"""
@@ -244,9 +236,8 @@ def _inverse(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     factor, failed = dpotrf(np.ascontiguousarray(matrix).T, lower=0)
     if failed:
         return np.linalg.inv(matrix), False
-    inverse = dpotri(factor, lower=0, overwrite_c=1)[0].T
-    kernels.mirror(inverse)
-    return inverse, True
+    lower = np.tril(dpotri(factor, lower=0, overwrite_c=1)[0].T)
+    return lower + np.tril(lower, -1).T, True
 
 
 @dataclass
@@ -277,8 +268,10 @@ class Flexibility:
         bent = previous_force * curvature
         if np.any(bent != 0):
             tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-            matrix = zone.bend(schur, tangent, bent)
-            border = -zone.spread((bent * tangent[:, 1])[:, None] * tangent)
+            on = bent != 0
+            rows, weight = zone.gather(tangent)[on], bent[on]
+            matrix = schur - rows.T @ (weight[:, None] * rows)
+            border = -rows.T @ (weight * tangent[on, 1])
             corner = -float(bent @ tangent[:, 1] ** 2)
         return cls(matrix, *_inverse(matrix), border, corner)
 

@@ -266,8 +266,9 @@ def _exchange(
         given = np.zeros(n) if bound is None else bound * state * (active & free)
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
-        system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
-        kernels.exchanged(a, share, on, stick, system)
+        transposed, right = np.empty((size, size)), np.zeros((size, 2))
+        kernels.exchanged(a, share, on, stick, transposed)
+        system = transposed.T
         needed = offset if bound is None else offset + a[:, n:] @ given
         right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:

@@ -6,6 +6,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from fingerpad.mechanics.elements import EDGE_POINTS, EDGE_WEIGHTS, ELEMENTS, edge_values
 from fingerpad.mechanics.linear_solver import SymmetricPattern
@@ -66,11 +67,8 @@ class Space:
     """
 
     def __init__(self, points, cells, kind, fixed, element=None):
-        points, cells, fixed = (
-            np.asarray(points, float),
-            np.asarray(cells, np.int32),
-            np.asarray(fixed, bool),
-        )
+        points, cells = np.asarray(points, float), np.asarray(cells, np.int32)
+        fixed = np.asarray(fixed, bool)
         self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
         if kind == "tri6" and self.element.nodes_per_element == 7:
             centroid = -points[cells[:, :3]].sum(1) / 9 + 4 / 9 * points[cells[:, 3:]].sum(1)
@@ -116,10 +114,6 @@ class Space:
             return np.broadcast_to(np.eye(count), (len(position), count, count))
         local = (position - self.centres[:, None]) / self._span[:, None, None]
         return np.concatenate([np.ones((*local.shape[:2], 1)), local], axis=2)[:, :, :count]
-
-    @property
-    def nodes(self) -> int:
-        return len(self.points)
 
     @cached_property
     def grad(self) -> np.ndarray:
@@ -167,6 +161,18 @@ class Space:
     def all_blocks(self) -> np.ndarray:
         """:meth:`blocks` of all elements."""
         return self.blocks(np.ones(len(self.cells), bool))
+
+    def volume_rates(self) -> csr_matrix:
+        """Room for the derivative of the elements' dilatation modes (ne nm) by all displacements (2
+        n): nm rows an element, in each all x before all y.
+        """
+        count, nodes, modes = len(self.cells), self.sizes[0], self.sizes[2]
+        columns = 2 * self.cells[:, None, None] + np.arange(2)[:, None]
+        columns = np.broadcast_to(columns, (count, modes, 2, nodes)).ravel()
+        starts = 2 * nodes * np.arange(count * modes + 1)
+        return csr_matrix(
+            (np.zeros(columns.size), columns, starts), shape=(count * modes, self.points.size)
+        )
 
     def to_equations(self, field: np.ndarray) -> np.ndarray:
         """Values of a nodal field (n, 2) at the free equations (size,)."""
