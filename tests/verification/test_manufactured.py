@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 from meshes import KIND, rectangle
-from problems import body_load, boundary, l2_error, lame_constants, make_body, solve, two_numbers
+from problems import (
+    SIDES,
+    boundary,
+    l2_error,
+    lame_constants,
+    load_of_stress,
+    make_body,
+    solve,
+    two_numbers,
+)
 
 from fingerpad.reference_solutions import manufactured
 
@@ -31,14 +40,11 @@ def errors(element, strain, poisson, ran_as=None, force_poisson=None):
     """Relative L2 errors of the displacement on distorted meshes of 4, 8 and 16 elements a side."""
     shear, bulk = lame_constants(1.0, poisson)
     if strain == "small":
-        isochoric, force = (
-            manufactured.divergence_free(0.1, 2.0),
-            manufactured.small_strain_body_force,
-        )
+        isochoric, stress = manufactured.divergence_free(0.1, 2.0), manufactured.small_strain_stress
     else:
-        isochoric, force = (
+        isochoric, stress = (
             manufactured.isochoric_shears(0.08, 2.5),
-            manufactured.finite_strain_body_force,
+            manufactured.first_piola_stress,
         )
     field = manufactured.nearly_incompressible(
         isochoric, manufactured.gradient_of_potential(0.1, 2.0), bulk, PRESSURE_MODULUS
@@ -47,9 +53,8 @@ def errors(element, strain, poisson, ran_as=None, force_poisson=None):
     found = []
     for count in (4, 8, 16):
         mesh = rectangle(count, count, kind=KIND[element], distortion=0.15)
-        fixed = boundary(mesh, "left", "right", "top", "bottom")
-        body = make_body(mesh, fixed, shear, bulk, ran_as or element, strain)
-        load = body_load(body.space, lambda x: force(field, x, *loaded))
+        body = make_body(mesh, boundary(mesh, *SIDES), shear, bulk, ran_as or element, strain)
+        load = load_of_stress(body.space, lambda x: stress(field, x, *loaded))
         solve(body, load, field.displacement(body.space.points))
         found.append(l2_error(body.space, body.u, field.displacement))
     return np.array(found)
