@@ -95,9 +95,7 @@ class Space:
         gram = (self.weight[..., None] * modes).swapaxes(1, 2) @ modes
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(modes @ self._orthonormal.swapaxes(1, 2))
-        reference = np.concatenate(
-            [self.element.gradients[..., 0], self.element.gradients[..., 1]]
-        ).T
+        reference = np.concatenate(np.moveaxis(self.element.gradients, -1, 0)).T
         parts = (self._inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
         self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
@@ -105,14 +103,14 @@ class Space:
         self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
         self.size = int(self.equation.max()) + 1
 
-    def _raw_modes(self, position):
-        """Pressure modes before orthonormalisation at points (ne, nq, 2): 1, x, y about the centre,
-        or one per point.
+    def _raw_modes(self, position, elements=slice(None)):
+        """Pressure modes before orthonormalisation at points (ne, nq, 2) of elements: 1, x, y about
+        the centre, or one per point.
         """
         count = self.element.pressure_modes
         if count not in (1, 3):
             return np.broadcast_to(np.eye(count), (len(position), count, count))
-        local = (position - self.centres[:, None]) / self._span[:, None, None]
+        local = (position - self.centres[elements, None]) / self._span[elements, None, None]
         return np.concatenate([np.ones((*local.shape[:2], 1)), local], axis=2)[:, :, :count]
 
     @cached_property
@@ -137,8 +135,7 @@ class Space:
             nearest = np.sum((places - points[:, None]) ** 2, axis=2).argmin(1)
             own = np.arange(count) == nearest[:, None]
             return np.where(own, self.psi[elements, nearest], 0.0)
-        local = (points - self.centres[elements]) / self._span[elements][:, None]
-        raw = np.column_stack([np.ones(len(points)), local])[:, :count]
+        raw = self._raw_modes(points[:, None], elements)[:, 0]
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
 
     def blocks(self, which: np.ndarray) -> np.ndarray:

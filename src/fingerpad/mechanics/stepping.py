@@ -251,10 +251,10 @@ class QuasiStatic:
             stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1])
         )
         (along, across), x = body.space.equation[skin.nodes[0]], self.points[:, 0]
-        mirrored = along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x)
+        mirrored = bool(along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x))
         stiffest = stiffest[skin.edges].min(axis=1)
         self.places = ContactPoints.on(
-            self.points, skin.nodes, skin.edges, stiffest, bool(mirrored), profile.convexity
+            self.points, skin.nodes, skin.edges, stiffest, mirrored, profile.convexity
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:

@@ -2,8 +2,9 @@
 
 Corners (0, 0), (48, 44), (48, 60), (0, 44); ``total_load`` is the resultant over the right edge of
 length 16. Plane strain. Sources: R. D. Cook (1974) for the problem; the value for nu = 1/3 is that
-of CalculiX and Elmer (CoFEA initiative); the nearly incompressible ones were recomputed with Taylor-Hood elements on graded and
-uniform 128 x 128 meshes (literature: Kasper & Taylor 2000, 7.769 for E = 250; 16.44 for E = 1.125).
+of CalculiX and Elmer (CoFEA initiative); the nearly incompressible ones were recomputed with
+Taylor-Hood elements on graded and uniform 128 x 128 meshes (literature: Kasper & Taylor 2000, 7.769
+for E = 250).
 """
 
 from dataclasses import dataclass

@@ -4,8 +4,8 @@ A :class:`Field` gives u and grad u in closed form; :func:`small_strain_stress` 
 :func:`first_piola_stress` turn them into the stress P. Its virtual work ``int P : grad v`` is that
 of the body force b = -Div P that makes the field a solution, for every v that is zero on the rim.
 Finite strain: psi = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 with the plane-strain I1 = tr C + 1.
-Shapes: points (..., 2), u (..., 2), grad u (..., 2, 2) with [i, J] = du_i/dX_J. Sources: P. J. Roache (2002) for the method; G. A. Holzapfel (2000), chapter 6, for the
-material.
+Shapes: points (..., 2), u (..., 2), grad u (..., 2, 2) with [i, J] = du_i/dX_J. Sources: P. J.
+Roache (2002) for the method; G. A. Holzapfel (2000), chapter 6, for the material.
 """
 
 from collections.abc import Callable
