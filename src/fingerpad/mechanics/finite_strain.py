@@ -223,13 +223,13 @@ class FiniteStrainBody:
         integral of the branches' second Piola-Kirchhoff stress over the Green strain, by the
         trapezoidal rule, so a hold of any length adds none.
         """
-        springs = np.empty(0), np.empty((0, *self._history.shape))
+        beta, stress = np.empty(0), self._history[None][:0]
         if self.branches is not None:
-            springs = self.branches.prony.beta, self.branches.q
+            beta, stress = self.branches.prony.beta, self.branches.q
         network, spring = np.sum(
             [
                 loops.energies(
-                    self.u, self.space.mesh, self.shear, *part, self._pointwise, *springs
+                    self.u, self.space.mesh, self.shear, *part, self._pointwise, beta, stress
                 )
                 for loops, *part in self._loops
             ],
