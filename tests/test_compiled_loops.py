@@ -6,7 +6,6 @@ import sys
 from contextlib import nullcontext
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from numba import njit
 
@@ -36,9 +35,9 @@ def test_a_second_process_takes_what_the_first_compiled(tmp_path):
         import numpy as np
         from fingerpad.compiled import compiling
         from fingerpad.mechanics import kernels
-        matrix = np.arange(4.0).reshape(2, 2)
-        kernels.mirror(matrix)
-        assert matrix[0, 1] == matrix[1, 0] == 2
+        compliance, out = np.arange(4.0).reshape(2, 2), np.zeros((1, 1))
+        kernels.exchanged(compliance, np.zeros(1), np.array([0]), np.zeros(0, int), out)
+        assert out[0, 0] == 0
         print(compiling() > 0.0)
     """
     for compiles in ("True", "False"):
@@ -68,19 +67,11 @@ def test_laws_and_elements_have_files_of_their_own():
         kernels.loops(law, *sizes).commit.py_func.__qualname__
         for law in (NEO_HOOKE, LAWS["yeoh"])
         for sizes in ((9, 9, 3), (4, 4, 1), (7, 7, 3))
-    } | {kernels.dilatation_loop(*sizes).py_func.__qualname__ for sizes in ((9, 9, 3), (4, 4, 1))}
-    assert len(names) == 8
-    assert NEO_HOOKE.source[:16] in kernels.stress_loop(NEO_HOOKE).py_func.__qualname__
+    }
+    assert len(names) == 6 and any(NEO_HOOKE.source[:16] in name for name in names)
 
 
 def test_loops_of_a_law_from_elsewhere_are_not_kept():
     foreign = replace(NEO_HOOKE, name="mine", stress=lambda i1, jac, mu, constants: (mu, 1.0))
     assert kernels.loops(foreign, 9, 9, 3).commit.stats.cache_path is None
     assert kernels.loops(NEO_HOOKE, 9, 9, 3).commit.stats.cache_path is not None
-
-
-def test_rows_of_fortran_are_not_taken_for_rows_of_c():
-    matrix = np.arange(9.0).reshape(3, 3)
-    for given in (matrix.copy(), np.asfortranarray(matrix), np.repeat(matrix, 2, axis=1)[:, ::2]):
-        kernels.mirror(given)
-        np.testing.assert_array_equal(given, np.tril(matrix) + np.tril(matrix, -1).T)

@@ -9,8 +9,6 @@ from scipy.linalg import expm
 
 from fingerpad.reference_solutions import (
     cattaneo_mindlin,
-    cook,
-    friction_plate,
     hertz,
     incline,
     lame,
@@ -164,44 +162,6 @@ def test_cattaneo_mindlin_return():
         cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, -1.1 * turn, load)
 
 
-@pytest.mark.parametrize(
-    "friction, ratio", [(0.0, 0.1), (0.1, 0.20202), (0.2, 0.306122), (0.3, 0.412371)]
-)
-def test_incline_table_of_cgs4(friction, ratio):
-    """NAFEMS CGS-4 at tan(alpha) = 0.1; downhill is uphill on the mirrored slope; balance of both
-    forces on the plane.
-    """
-    assert incline.limit_ratio(0.1, friction) == pytest.approx(ratio, abs=5e-7)
-    assert incline.limit_ratio(-0.1, friction) == pytest.approx(
-        (friction - 0.1) / (1 + 0.1 * friction)
-    )
-    along, across = (
-        np.array([1, 0.1]),
-        np.array([-0.1, 1]),
-    )  # uphill and out of the plane, both times sqrt(1.01)
-    push = np.array([ratio, -1.0])
-    assert push @ along == pytest.approx(-friction * (push @ across), abs=1e-6)
-    for wrong in ((0.1, -0.1), (2.0, 0.5)):
-        with pytest.raises(ValueError):
-            incline.limit_ratio(*wrong)
-
-
-def test_friction_plate_numbers_agree_with_each_other():
-    """The recomputed displacements lie within the 5 % of the codes, fall inwards and are less than
-    without friction.
-    """
-    np.testing.assert_allclose(friction_plate.CONVERGED, friction_plate.MEAN_OF_CODES, rtol=0.05)
-    strain = (
-        (1 - friction_plate.POISSON_RATIO**2)
-        * friction_plate.SIDE_PRESSURE
-        / friction_plate.YOUNGS_MODULUS
-    )
-    left, *others = friction_plate.CONVERGED
-    assert strain * friction_plate.SIDE > left > max(others) and others == sorted(
-        others, reverse=True
-    )
-
-
 def test_punch_pressure_load_and_exponent():
     assert punch.pressure(0.0, 2.0, 10.0) * 2 / 10 == pytest.approx(0.3183, abs=5e-5)
     assert punch.stick_exponent(0.5) == 0
@@ -342,12 +302,6 @@ def test_thick_cylinder_of_ssnv130():
     assert uniform == pytest.approx(-(1.3 * 0.4) / 2e11 * 1e6 * 0.15)
 
 
-def test_cook_table_holds_the_famous_numbers():
-    assert cook.CASES["plane_stress"].mid_edge == pytest.approx(23.96, abs=0.01)
-    assert cook.CASES["nearly_incompressible"].mid_edge == 7.695
-    assert cook.LOCKED_Q1[16] < 0.4 * cook.CASES["nearly_incompressible"].mid_edge
-
-
 # --- viscoelasticity ------------------------------------------------------------------------------
 def test_relaxation_and_creep_limits():
     assert prony_point.relaxation(0.0, *PRONY) == 1
@@ -412,39 +366,15 @@ def test_dissipation_is_the_area_of_the_loop():
     )
 
 
-def test_lee_radok_table():
-    t = np.array([0, 1, 2, 5, 10, 50])
-    width = lee_radok.step_creep_width(t, 1, 1, 1, *ONE_TERM)
-    np.testing.assert_allclose(
-        width / width[0], [1, 1.3134, 1.5227, 1.8784, 2.1116, 2.2360], atol=5e-5
-    )
-    force = lee_radok.held_width_force(np.array([0, 1, 2, 5]), 1, 1, 1, *ONE_TERM)
-    np.testing.assert_allclose(force / force[0], [1, 0.4943, 0.3083, 0.2054], atol=5e-5)
-    assert hertz.half_width(1.0, 1.0, 4.0) == pytest.approx(width[0])
-
-
 def test_lee_radok_routes_agree():
-    t = np.linspace(0, 3, 301)
-    rate, radius, shear = 0.2, 5.0, 2.0
-    ramp = lee_radok.force_from_width(t, np.sqrt(rate * t), radius, shear, *PRONY)
-    integral, _ = quad(lambda s: prony_point.relaxation(3.0 - s, *PRONY), 0, 3.0)
-    assert np.pi / radius * shear * rate * integral == pytest.approx(ramp[-1], rel=1e-10)
+    t, radius, shear = np.linspace(0, 3, 301), 5.0, 2.0
+    ramp = np.pi / radius * prony_point.stress_from_strain(t, 0.2 * t, *PRONY, shear)
     back = lee_radok.width_from_force(t, ramp, radius, shear, *PRONY)
-    np.testing.assert_allclose(back, np.sqrt(rate * t), atol=1e-4)
-    held = lee_radok.force_from_width([0, 0, 2], [0, 0.3, 0.3], radius, shear, *PRONY)
+    np.testing.assert_allclose(back, np.sqrt(0.2 * t), atol=1e-4)
+    held = np.pi / radius * prony_point.stress_from_strain([0, 2], [0.09] * 2, *PRONY, shear)
     assert held[-1] == pytest.approx(lee_radok.held_width_force(2.0, 0.3, radius, shear, *PRONY))
     step = lee_radok.width_from_force([0, 0, 2], [0, 0.3, 0.3], radius, shear, *PRONY)
     assert step[-1] == pytest.approx(lee_radok.step_creep_width(2.0, radius, 0.3, shear, *PRONY))
-
-
-def test_ting_contains_lee_radok():
-    """With F_e = pi G0 a^2/R the hereditary integrals are Lee and Radok's."""
-    t = np.linspace(0, 2, 101)
-    elastic = 3.0 * t
-    np.testing.assert_allclose(
-        ting.force_under_depth_control(t, elastic, *PRONY),
-        lee_radok.force_from_width(t, np.sqrt(elastic / np.pi), 1.0, 1.0, *PRONY),
-    )
 
 
 # --- manufactured fields --------------------------------------------------------------------------
@@ -475,40 +405,23 @@ def test_gradients_of_the_fields(name):
     np.testing.assert_allclose(
         field.gradient(POINTS), _numerical(field.displacement, POINTS), atol=1e-9
     )
-    np.testing.assert_allclose(
-        field.second_gradient(POINTS), _numerical(field.gradient, POINTS), atol=1e-8
-    )
-
-
-@pytest.mark.parametrize("name", FIELDS)
-@pytest.mark.parametrize("bulk", [2.0, 1e4])
-def test_body_forces_balance_the_stress(name, bulk):
-    field, mu = FIELDS[name], 1.3
-    for stress, force in (
-        (manufactured.small_strain_stress, manufactured.small_strain_body_force),
-        (manufactured.first_piola_stress, manufactured.finite_strain_body_force),
-    ):
-        divergence = np.einsum(
-            "...iJJ->...i", _numerical(lambda x, s=stress: s(field, x, mu, bulk), POINTS)
-        )
-        np.testing.assert_allclose(force(field, POINTS, mu, bulk), -divergence, atol=1e-7 * bulk)
 
 
 def test_piola_stress_is_the_derivative_of_the_energy():
-    base = np.array([[0.1, 0.2], [-0.05, 0.15]])
-    h = 1e-6
-    stress = manufactured.first_piola_stress(manufactured.affine(base), POINTS[:1], 1.3, 20.0)[0]
-    for i in range(2):
-        for j in range(2):
-            step = np.zeros((2, 2))
-            step[i, j] = h
-            energies = [
-                manufactured.finite_strain_energy(
-                    manufactured.affine(base + s * step), POINTS[:1], 1.3, 20.0
-                )[0]
-                for s in (1, -1)
-            ]
-            assert stress[i, j] == pytest.approx((energies[0] - energies[1]) / (2 * h), abs=1e-7)
+    base, h = np.array([[0.1, 0.2], [-0.05, 0.15]]), 1e-6
+
+    def energy(gradient):
+        f = gradient + np.eye(2)
+        volume = np.linalg.det(f)
+        invariant = (f**2).sum() + 1
+        return 1.3 / 2 * (volume ** (-2 / 3) * invariant - 3) + 20.0 / 2 * (volume - 1) ** 2
+
+    stress = manufactured.first_piola_stress(manufactured.affine(base), POINTS[0], 1.3, 20.0)
+    for i, j in np.ndindex(2, 2):
+        step = np.zeros((2, 2))
+        step[i, j] = h
+        slope = (energy(base + step) - energy(base - step)) / (2 * h)
+        assert stress[i, j] == pytest.approx(slope, abs=1e-7)
 
 
 def test_isochoric_fields_are_isochoric():
@@ -533,7 +446,8 @@ def test_isochoric_fields_are_isochoric():
         lambda: layered_contact.press(lambda x: 1e-9 * x**2, [layered.Layer(1, 1, 0.3)], 1.0, 1.0),
         lambda: prony_point.relaxation(1, [0.6, 0.5], [1, 1]),
         lambda: prony_point.stress_from_strain([1, 0], [0, 1], [0.1], [1]),
-        lambda: lee_radok.force_from_width([0, 1], [1, 0.5], 1, 1, [0.1], [1]),
+        lambda: incline.limit_ratio(0.1, -0.1),
+        lambda: incline.limit_ratio(2.0, 0.5),
         lambda: lee_radok.width_from_force([0, 1], [1, 0.0], 1, 1, [0.1], [1]),
         lambda: ting.force_under_depth_control([0, 1], [1, 0], [0.1], [1]),
         lambda: ting.elastic_force_under_force_control([0, 1], [1, 0], [0.1], [1]),

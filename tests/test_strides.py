@@ -30,6 +30,11 @@ def off(found, truth):
     return np.abs(found - truth).sum() / truth.sum()
 
 
+def passed(first, last, share=0.5):
+    """Pressure at a share of the way."""
+    return Passage.at(first, last, share, X).pressure(first.pressure, last.pressure)
+
+
 # --- between two states ---------------------------------------------------------------------------
 
 
@@ -41,7 +46,7 @@ def test_a_bump_passes_under_the_skin():
     )
     for share in (0.25, 0.5, 0.8):
         truth = hertz(0.2e-3 - 0.4e-3 * share)
-        found = Passage.at(first, last, share, X).pressure(first.pressure, last.pressure)
+        found = passed(first, last, share)
         straight = (1 - share) * first.pressure + share * last.pressure
         assert off(found, truth) < 0.012 < 0.1 < off(straight, truth)
 
@@ -50,7 +55,7 @@ def test_a_plate_passes_and_the_contact_stays():
     """Its edges stay where the pad's shape has them, whatever goes by."""
     plate = touch(hertz(half_width=2e-3), 0.0, (-2e-3, 2e-3))
     gone = touch(hertz(half_width=2e-3), 0.25e-3, (-2e-3, 2e-3))
-    found = Passage.at(plate, gone, 0.5, X).pressure(plate.pressure, gone.pressure)
+    found = passed(plate, gone)
     assert off(found, plate.pressure) < 0.006
     assert np.array_equal(found > 0, plate.pressure > 0)
 
@@ -64,7 +69,7 @@ def test_a_ripple_inside_goes_along_with_the_surface():
         )
 
     first, last = (touch(rippled(d), d, (-3e-3, 3e-3)) for d in (0.0, 0.25e-3))
-    found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
+    found = passed(first, last)
     inside = np.abs(X) < 1.2e-3
     assert off(found[inside], rippled(0.125e-3)[inside]) < 0.03
     assert off((0.5 * (first.pressure + last.pressure))[inside], rippled(0.125e-3)[inside]) > 0.08
@@ -76,7 +81,7 @@ def test_a_piece_that_comes_fades_in():
     """
     alone, both = hertz(-1e-3), hertz(-1e-3) + hertz(2e-3, 0.3e-3, 4e3)
     first, last = touch(alone, 0.0), touch(both, 1e-6)
-    found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
+    found = passed(first, last)
     assert off(found[X < 0], alone[X < 0]) < 0.01
     assert found[X > 0].sum() == pytest.approx(0.5 * both[X > 0].sum(), rel=0.02)
 
@@ -84,15 +89,9 @@ def test_a_piece_that_comes_fades_in():
 def test_ends_are_the_states():
     first, last = touch(hertz(0.1e-3), 0.0), touch(hertz(-0.1e-3), 0.25e-3)
     for share, state in ((0.0, first), (1.0, last)):
-        assert np.allclose(
-            Passage.at(first, last, share, X).pressure(first.pressure, last.pressure),
-            state.pressure,
-            atol=1e-9,
-        )
+        assert np.allclose(passed(first, last, share), state.pressure, atol=1e-9)
     nowhere = touch(np.zeros(len(X)))
-    assert (
-        not Passage.at(nowhere, nowhere, 0.5, X).pressure(nowhere.pressure, nowhere.pressure).any()
-    )
+    assert not passed(nowhere, nowhere).any()
 
 
 # --- the estimate ---------------------------------------------------------------------------------
@@ -130,31 +129,44 @@ def outputs(count, way=0.05e-3, leg=1, dt=0.01):
     ]
 
 
-def walk(strides, error):
-    """Numbers of outputs passed and found, of a walk where ``error(way)`` is what is missed over a
-    way (m).
+def contact_at(step):
+    return touch(hertz(), step.distance)
+
+
+USUAL = Between(0.25e-3, 0.01)
+
+
+def walk(steps, error=None, between=USUAL, contact=contact_at):
+    """Numbers of outputs passed and found, and the steps, of a walk where ``error(way)`` is what is
+    missed over a way (m); None: what is really missed.
     """
-    found, states = [], [touch(hertz()), touch(hertz())]
+    strides, found, last = Strides(iter(steps), between), [], []
+    states = 2 * [contact(Step(0, 0.0, 0.0))]
     while (following := strides.next()) is not None:
-        step, passed = following
-        now = touch(hertz(), step.distance)
-        if not _judged(strides, error(now.distance - states[-1].distance), states, now):
+        step, skipped = following
+        now = contact(step)
+        way = now.distance - states[-1].distance
+        with pytest.MonkeyPatch.context() as patch:
+            if error is not None:
+                off = error(way)
+                patch.setattr("fingerpad.mechanics.strides.missed", lambda *_, off=off: off)
+            good = strides.judge(*states, now)
+        if not good:
             assert strides.shorten()
             continue
         strides.found(step)
         states = [states[-1], now]
-        found.append(len(passed) + 1)
-    return found
+        found.append(len(skipped) + 1)
+        last.append(step)
+    return found, last
 
 
-def _judged(strides, off, states, now, monkey=pytest.MonkeyPatch):
-    with monkey.context() as patch:
-        patch.setattr("fingerpad.mechanics.strides.missed", lambda *_: off)
-        return strides.judge(*states, now)
+def nothing(way):
+    return 0.0
 
 
 def test_strides_grow_to_the_longest_where_nothing_is_missed():
-    found = walk(Strides(iter(outputs(200)), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    found, _ = walk(outputs(200), nothing)
     assert sum(found) == 200 and found[:4] == [1, 2, 4, 5] and set(found[4:-1]) == {5}
 
 
@@ -162,9 +174,11 @@ def test_strides_are_as_long_as_the_tolerance_allows():
     """What is missed grows with the square of the way: the way settles where it is the
     tolerance.
     """
-    found = walk(
-        Strides(iter(outputs(300)), Between(1e-3, 0.01)), lambda way: 0.01 * (way / 0.31e-3) ** 2
-    )
+
+    def error(way):
+        return 0.01 * (way / 0.31e-3) ** 2
+
+    found, _ = walk(outputs(300), error, Between(1e-3, 0.01))
     assert sum(found) == 300 and set(found[6:-1]) == {6}
 
 
@@ -178,7 +192,7 @@ def test_a_stride_over_an_event_is_taken_back():
         seen.append(way)
         return 1.0 if len(seen) > 8 and way > 0.06e-3 else 0.0
 
-    found = walk(Strides(iter(outputs(60)), Between(0.25e-3, 0.01)), error)
+    found, _ = walk(outputs(60), error)
     assert sum(found) == 60 and found[:4] == [1, 2, 4, 5] and set(found[8:-1]) == {1}
 
 
@@ -187,22 +201,14 @@ def test_every_output_is_found_while_stick_turns_to_slip():
     taken back.
     """
     plate = hertz(half_width=2e-3)
-    strides = Strides(iter(outputs(60)), Between(0.25e-3, 0.05))
-    states, found = [touch(plate, drag=0.3), touch(plate, drag=0.3)], []
-    while (following := strides.next()) is not None:
-        step, passed = following
-        sticks = float(
-            np.clip((2e-3 - step.distance) / 1e-3, 0, 1)
-        )  # from 1 to 2 mm ever less of it
-        now = Touch(X, plate, (np.nan, np.nan), step.distance, 0.3, sticks)
-        if not strides.judge(*states, now):
-            assert strides.shorten()
-            continue
-        strides.found(step)
-        states = [states[-1], now]
-        found.append((step.distance, len(passed) + 1))
-    turning = [count for distance, count in found if 1.05e-3 < distance < 1.95e-3]
-    assert set(turning) == {1} and len(turning) >= 17 and max(count for _, count in found) == 5
+
+    def contact(step):  # from 1 to 2 mm ever less of it sticks
+        sticks = float(np.clip((2e-3 - step.distance) / 1e-3, 0, 1))
+        return Touch(X, plate, (np.nan, np.nan), step.distance, 0.3, sticks)
+
+    found, steps = walk(outputs(60), None, Between(0.25e-3, 0.05), contact)
+    turning = [n for n, step in zip(found, steps, strict=True) if 1.05e-3 < step.distance < 1.95e-3]
+    assert set(turning) == {1} and len(turning) >= 17 and max(found) == 5
 
 
 def test_what_must_be_found_is_found():
@@ -212,11 +218,11 @@ def test_what_must_be_found_is_found():
     pressed = [Step(0, 0.1 * k, 0.1, force=float(k)) for k in (1, 2, 3)]
     slide = outputs(40)
     slide[13] = Step(1, slide[13].time, 0.01, force=1.0, distance=slide[13].distance)
-    found = walk(Strides(iter(pressed + slide), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    found, _ = walk(pressed + slide, nothing)
     assert (
         found[:3] == [1, 1, 1] and 17 in np.cumsum(found) and max(found) == 5 and sum(found) == 43
     )
-    assert walk(Strides(iter(pressed + slide)), lambda way: 0.0) == [1] * 43
+    assert walk(pressed + slide, nothing, None)[0] == [1] * 43
 
 
 def test_a_leg_begins_with_short_strides():
@@ -225,13 +231,13 @@ def test_a_leg_begins_with_short_strides():
         Step(2, s.time + 0.4, s.dt, force=1.0, distance=2e-3 - s.distance, solved=s.solved)
         for s in outputs(40)
     ]
-    found = walk(Strides(iter(outputs(40) + back), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    found, _ = walk(outputs(40) + back, nothing)
     start = int(np.flatnonzero(np.cumsum(found) == 40)[0]) + 1
     assert found[start - 2] == 5 and found[start : start + 4] == [1, 2, 4, 5]
 
 
 def test_a_stride_takes_the_time_of_what_it_passes():
-    strides = Strides(iter(outputs(10)), Between(0.25e-3, 0.01))
+    strides = Strides(iter(outputs(10)), USUAL)
     strides._leg, strides._wanted = 1, 0.25e-3
     step, passed = strides.next()
     assert (
@@ -239,7 +245,7 @@ def test_a_stride_takes_the_time_of_what_it_passes():
         and step.distance == pytest.approx(0.25e-3)
         and [s.time for s in passed] == pytest.approx([0.01, 0.02, 0.03, 0.04])
     )
-    steady = Strides(iter(outputs(10, dt=STEADY)), Between(0.25e-3, 0.01))
+    steady = Strides(iter(outputs(10, dt=STEADY)), USUAL)
     steady._leg, steady._wanted = 1, 0.25e-3
     assert steady.next()[0].dt == STEADY
 
@@ -247,19 +253,27 @@ def test_a_stride_takes_the_time_of_what_it_passes():
 # --- histories at all outputs ---------------------------------------------------------------------
 
 
-def made(places, passed):
-    """Arrays at states of a slide, and their records: a bump that goes along with the surface."""
+def made(count, each=5):
+    """Arrays at ``count`` states of a slide, their times and records, with ``each`` outputs to a
+    state: a bump that goes along with the surface.
+    """
+    places, zero = np.arange(1, count + 1) * 0.25e-3, np.zeros(count + 1)
     found = {
         "stroke_distance": np.array([0.0, *places]),
-        "leg": np.array([0, *[1] * len(places)]),
-        "newton_iterations": np.array([0, *range(3, 3 + len(places))]),
-        "cutbacks": np.zeros(len(places) + 1, int),
-        "residual": np.zeros(len(places) + 1),
-        "complementarity_error": np.zeros(len(places) + 1),
-        "energy_balance_error": np.zeros(len(places) + 1),
-        "min_detF": np.ones(len(places) + 1),
-        "peak_pressure": np.zeros(len(places) + 1),
-        "centre_pressure": np.zeros(len(places) + 1),
+        "leg": np.array([0, *[1] * count]),
+        "newton_iterations": np.array([0, *range(3, 3 + count)]),
+        "cutbacks": zero.astype(int),
+        "min_detF": np.ones(count + 1),
+    }
+    found |= {
+        name: zero.copy()
+        for name in (
+            "residual",
+            "complementarity_error",
+            "energy_balance_error",
+            "peak_pressure",
+            "centre_pressure",
+        )
     }
     s = found["stroke_distance"]
     found["indentation_depth"] = 1e-3 + np.sin(2 * np.pi * s / 4e-3) * 1e-4
@@ -270,19 +284,16 @@ def made(places, passed):
     found["contact_state"] = np.where(found["contact_pressure"] > 0, 2, 0).astype(np.int8)
     found["slip"] = np.where(found["contact_state"] == 2, np.diff(s, prepend=0.0)[:, None], 0.0)
     records = []
-    for k, place in enumerate(places):
-        steps = tuple(
-            Step(1, 100 * d, 0.0, distance=d, solved=False)
-            for d in passed
-            if (0, *places)[k] < d < place
-        )
+    for place in places:
+        between = place - 0.25e-3 * np.arange(each - 1, 0, -1) / each
+        steps = tuple(Step(1, 100 * d, 0.0, distance=d, solved=False) for d in between)
         records.append(SimpleNamespace(passed=steps, edges=(0.0 - place, 1e-3 - place)))
     return found, np.append(0.0, 100 * np.array(places)), records
 
 
 def test_between_states_curves_are_smooth_and_the_contact_goes_along():
-    places, every = np.arange(1, 9) * 0.25e-3, np.arange(1, 41) * 0.05e-3
-    found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
+    every = np.arange(1, 41) * 0.05e-3
+    found, time, records = made(8)
     out, times = at_outputs(found, time, records, X, len(X) // 2)
     assert np.allclose(times, np.append(0, 100 * every)) and np.allclose(
         out["stroke_distance"], np.append(0, every)
@@ -305,8 +316,7 @@ def test_between_states_curves_are_smooth_and_the_contact_goes_along():
 
 def test_a_curve_has_a_kink_where_contact_is_lost_and_comes_back():
     """One spline through all states would swing to either side of it, and a force below zero."""
-    places, every = np.arange(1, 17) * 0.25e-3, np.arange(1, 81) * 0.05e-3
-    found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
+    found, time, records = made(16)
     s = found["stroke_distance"]
     found["force"] = 3.0 * np.maximum(np.abs(s - 2.1e-3) - 0.58e-3, 0.0)
     found["contact_pressure"][found["force"] == 0] = 0.0
@@ -320,8 +330,7 @@ def test_a_curve_has_a_kink_where_contact_is_lost_and_comes_back():
 
 
 def test_a_piece_of_contact_in_one_state_alone_leaves_no_wiggle():
-    places, every = np.arange(1, 9) * 0.25e-3, np.arange(1, 41) * 0.05e-3
-    found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
+    found, time, records = made(8)
     found["contact_pressure"][6, 3] = 1.0
     out, _ = at_outputs(found, time, records, X, len(X) // 2)
     truth = 1e-3 + np.sin(2 * np.pi * out["stroke_distance"] / 4e-3) * 1e-4
@@ -413,7 +422,7 @@ def test_strides_pass_what_need_not_be_found_of_a_press():
     outputs, then with none.
     """
     steps = [Step(0, 0.1 * k, 0.1, force=float(k), solved=k in (1, 8)) for k in range(1, 9)]
-    for between in (None, Between(0.25e-3, 0.01)):
+    for between in (None, USUAL):
         strides = Strides(iter(steps), between)
         strides.found(strides.next()[0])
         step, passed = strides.next()
@@ -427,7 +436,7 @@ def test_strides_pass_what_need_not_be_found_of_a_press():
 
 
 def test_nothing_changes_where_every_output_was_found():
-    found, time, records = made(np.arange(1, 5) * 0.25e-3, [])
+    found, time, records = made(4, each=1)
     out, times = at_outputs(found, time, records, X, len(X) // 2)
     assert np.array_equal(times, time) and not out["interpolated"].any()
     assert all(np.array_equal(out[name], values) for name, values in found.items())

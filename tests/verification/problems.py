@@ -80,21 +80,25 @@ def solve(body, external, start=None, tolerance=1e-11, most=30):
 
 
 def _fine_quadrature(space, degree=8):
-    """Positions (ne, nq, 2), weights (ne, nq), shape functions (nq, nen) of a rule of high
-    degree.
+    """Of a rule of high degree: positions (ne, nq, 2), weights (ne, nq), shape functions (nq, nen)
+    and their gradients (ne, nq, nen, 2).
     """
     kind = ElementTriP2 if space.element.triangle else ElementQuad2
     xi, weights = get_quadrature(kind, degree)
-    values, gradients = space.element.shape(xi.T)
+    values, slopes = space.element.shape(xi.T)
     x = space.points[space.cells]
-    jacobian = np.einsum("qai,eaj->eqij", gradients, x)
-    return np.einsum("qa,eai->eqi", values, x), np.linalg.det(jacobian) * weights, values
+    jacobian = np.einsum("qai,eaj->eqij", slopes, x)
+    gradients = np.einsum("eqij,qaj->eqai", np.linalg.inv(jacobian), slopes)
+    weights = np.linalg.det(jacobian) * weights
+    return np.einsum("qa,eai->eqi", values, x), weights, values, gradients
 
 
-def body_load(space, force):
-    """Nodal forces (n, 2) of a body force, a function of points (..., 2) -> (..., 2)."""
-    position, weight, values = _fine_quadrature(space)
-    nodal = np.einsum("eq,qa,eqi->eai", weight, values, force(position))
+def load_of_stress(space, stress):
+    """Nodal forces (n, 2) that keep a stress in balance inside, a function of points (..., 2) ->
+    (..., 2, 2).
+    """
+    position, weight, _, gradients = _fine_quadrature(space)
+    nodal = np.einsum("eq,eqij,eqaj->eai", weight, stress(position), gradients)
     out = np.zeros(space.points.shape)
     np.add.at(out, space.cells, nodal)
     return out
@@ -102,7 +106,7 @@ def body_load(space, force):
 
 def l2_error(space, u, exact):
     """L2 norm of u - exact over that of exact."""
-    position, weight, values = _fine_quadrature(space)
+    position, weight, values, _ = _fine_quadrature(space)
     truth = exact(position)
     error = np.einsum("qa,eai->eqi", values, u[space.cells]) - truth
     return float(

@@ -46,6 +46,21 @@ def dragged_cylinder(shares, friction=MU, poisson=POISSON, back=()):
     return [dragged(body, skin, record) for record in records]
 
 
+def pressed_block(steps, friction=MU):
+    """States of the same half-plane under the same cylinder after each step of a schedule."""
+    mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
+    return stroke(body, mesh, steps, Cylinder(curvature=1 / RADIUS), friction or None)
+
+
+def check_traction(state, truth, most, mean):
+    """Off by at most ``most`` of mu p0 (next to a kink), and by ``mean`` in the mean."""
+    error = (state.traction - truth)[np.abs(state.x) < 0.9] / (MU * PEAK)
+    worst, typical = np.abs(error).max(), np.std(error)
+    assert worst < most and typical < mean, (
+        f"truth: the traction is off by {worst:.4f} of mu p0, by {typical:.4f} in the mean"
+    )
+
+
 def stick_half_width(state, friction=MU):
     """Half width of the stick zone, where (mu p - q)^2 is proportional to c^2 - x^2; zero if
     nothing sticks.
@@ -67,13 +82,7 @@ def check_partial_slip(share, **mutant):
     )
     ratio = cattaneo_mindlin.stick_ratio(share, 1.0, 1.0)
     truth = cattaneo_mindlin.traction(state.x, 1.0, PEAK, MU, ratio)
-    error = (state.traction - truth)[np.abs(state.x) < 0.9] / (MU * PEAK)
-    assert np.abs(error).max() < 0.08, (
-        f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"
-    )  # next to the kink
-    assert np.std(error) < 0.012, (
-        f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
-    )
+    check_traction(state, truth, 0.08, 0.012)
     ends = np.abs(state.x[state.stick])[[0, -1]]
     assert np.all(np.abs(ends - ratio) < 0.04), f"truth: {ends} stick, not {ratio:.4f}"
     centre = np.argmin(np.abs(state.x))
@@ -117,13 +126,7 @@ def check_return(turn=0.75, back=(0.4, 0.0, -0.4), **mutant):
         truth = cattaneo_mindlin.returned_traction(
             state.x, 1.0, PEAK, MU, turn * limit, share * limit, HERTZ_LOAD
         )
-        error = (state.traction - truth)[np.abs(state.x) < 0.9] / (MU * PEAK)
-        assert np.abs(error).max() < 0.1, (
-            f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"
-        )  # next to a kink
-        assert np.std(error) < 0.02, (
-            f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
-        )
+        check_traction(state, truth, 0.1, 0.02)
         centre = np.argmin(np.abs(state.x))
         expected, found = truth[centre] / (MU * PEAK), state.traction[centre] / (MU * PEAK)
         two_numbers(found, truth=float(expected), within=0.02, frozen=RETURN[share], tight=2e-5)
@@ -143,10 +146,7 @@ def test_partial_slip_on_the_way_back(must_fail):
 
 def check_sliding_cylinder(friction=MU, distance=0.1):
     """Pressed, then slid far enough for everything to slip."""
-    mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *_, state = stroke(
-        body, mesh, slide(HERTZ_LOAD, distance, 2), Cylinder(curvature=1 / RADIUS), friction or None
-    )
+    *_, state = pressed_block(slide(HERTZ_LOAD, distance, 2), friction)
     assert abs(state.ratio - MU) < 1e-4 * MU, f"truth: F_t/F_n = {state.ratio!r} is not mu"
     assert not state.stick.any(), "truth: all of it slips"
     inside = np.abs(state.x + distance) < 0.85
@@ -172,10 +172,7 @@ def test_sliding_cylinder(must_fail):
 
 def check_full_stick(friction=100.0):
     """A cylinder that cannot slip, dragged in equal small steps."""
-    mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *states = stroke(
-        body, mesh, slide(HERTZ_LOAD, 4e-5, 4), Cylinder(curvature=1 / RADIUS), friction or None
-    )
+    pressed, *states = pressed_block(slide(HERTZ_LOAD, 4e-5, 4), friction)
     forces = np.array([state.record.tangential_force for state in (pressed, *states)])
     assert forces[-1] > 0.1 * MU * HERTZ_LOAD, (
         f"truth: the skin is dragged along, F_t = {forces[-1]!r}"
@@ -429,20 +426,11 @@ def check_energy(strain, friction=PAD_MU, frictional_share=1.0):
     for count in (10, 20):
         states = viscoelastic_stroke(count, steady=(3.5e-3, 4e-3), strain=strain, friction=friction)
         *_, end, before, last = (state.record for state in states)
-        way, truth = (
-            last.distance - before.distance,
-            PAD_MU * LOAD * (last.distance - before.distance),
-        )
-        work, lost = last.work - before.work, last.frictional - before.frictional
-        assert abs(last.tangential_force * way - truth) < 1e-6 * truth, (
-            f"truth: F_t is not mu F_n but {last.tangential_force!r}"
-        )
-        assert abs(work - truth) < 1e-5 * truth, (
-            f"truth: the work in steady slip is {work!r}, not {truth!r}"
-        )
-        assert abs(lost - truth) < 1e-5 * truth, (
-            f"truth: friction dissipates {lost!r} in steady slip, not {truth!r}"
-        )
+        way = last.distance - before.distance
+        truth = PAD_MU * LOAD * way
+        close(last.tangential_force * way, truth, "F_t is mu F_n", rtol=1e-6)
+        close(last.work - before.work, truth, "work in steady slip", rtol=1e-5)
+        close(last.frictional - before.frictional, truth, "what friction takes", rtol=1e-5)
         found = [
             abs(r.work - sum(r.energies[:2]) - r.dissipated - frictional_share * r.frictional)
             / r.work

@@ -74,29 +74,35 @@ def equal(found, truth):
     close(found, truth, atol=1e-10 * np.abs(truth).max(), rtol=0)
 
 
+def second_step(body, prony):
+    """Begin a second step after one elsewhere; returns that displacement, the share of the elastic
+    stress that answers at once, and how much of that of elsewhere is left.
+    """
+    early, factor, left = displacement(body.space.points, -0.1), 1.0, 0.0
+    if prony is None:
+        return early, factor, left
+    first, second = 0.3, 0.7
+    body.begin_step(first)
+    body.displace(early)
+    body.commit()
+    body.begin_step(second)
+    for beta, tau in zip(prony.beta, prony.tau, strict=True):
+        then, now = ((1 - np.exp(-dt / tau)) / (dt / tau) for dt in (first, second))
+        left += np.exp(-second / tau) * beta * then - beta * now
+        factor += beta * now
+    return early, factor, left
+
+
 def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
     """Force and tangent at a large displacement with another pressure in the tangent; with
     branches, in a second step.
     """
     body, form, slopes, mu = parts(element, "finite", law, prony, **more)
     points, space = body.space.points, body.space
-    factor, history = 1.0, 0.0
-    if prony is not None:
-        first, second, early = 0.3, 0.7, displacement(points, -0.1)
-        body.begin_step(first)
-        body.displace(early)
-        body.commit()
-        body.begin_step(second)
-        f = np.eye(2).reshape(2, 2, 1, 1) + form.field(early).grad
-        elastic = np.einsum("ij...,jk...->ik...", np.linalg.inv(f.T).T, isochoric_stress(f, slopes))
-        for beta, tau in zip(prony.beta, prony.tau, strict=True):
-            gammas = [(1 - np.exp(-dt / tau)) / (dt / tau) for dt in (first, second)]
-            history = (
-                history
-                + np.exp(-second / tau) * beta * gammas[0] * elastic
-                - beta * gammas[1] * elastic
-            )
-            factor += beta * gammas[1]
+    early, factor, left = second_step(body, prony)
+    f = np.eye(2).reshape(2, 2, 1, 1) + form.field(early).grad
+    elastic = np.einsum("ij...,jk...->ik...", np.linalg.inv(f.T).T, isochoric_stress(f, slopes))
+    history = left * elastic
     u = displacement(points)
     random = np.random.default_rng(5)
     lag = 0.05 * random.normal(size=body.dilatation().shape)
@@ -139,23 +145,10 @@ def test_finite_strain_with_unprojected_stiffness(element, must_fail):
 def check_small(element, law="neo_hooke", prony=None, change=1.0):
     """Small strain: force and tangent, whatever the law; with branches, in a second step."""
     body, form, _, mu = parts(element, "small", law, prony)
-    factor, history = 1.0, np.zeros(body.u.shape)
-    shape, points = (
-        form.linear_stiffness(mu[:, 0]) - form.linear_stiffness(0 * mu[:, 0]),
-        body.space.points,
-    )
-    if prony is not None:
-        first, second, early = 0.3, 0.7, displacement(points, -0.1)
-        body.begin_step(first)
-        body.displace(early)
-        body.commit()
-        body.begin_step(second)
-        for beta, tau in zip(prony.beta, prony.tau, strict=True):
-            gammas = [(1 - np.exp(-dt / tau)) / (dt / tau) for dt in (first, second)]
-            share = np.exp(-second / tau) * beta * gammas[0] - beta * gammas[1]
-            history = history + share * (shape @ early.ravel()).reshape(early.shape)
-            factor += beta * gammas[1]
-    u = displacement(points)
+    early, factor, left = second_step(body, prony)
+    shape = form.linear_stiffness(mu[:, 0]) - form.linear_stiffness(0 * mu[:, 0])
+    history = left * (shape @ early.ravel()).reshape(early.shape)
+    u = displacement(body.space.points)
     body.displace(u)
     stiffness = form.linear_stiffness(mu[:, 0], change * factor)
     equal(body.internal_force(), (stiffness @ u.ravel()).reshape(u.shape) + history)

@@ -20,7 +20,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import cast
 
 import numpy as np
 from scipy.linalg import eigvalsh_tridiagonal, ldl
@@ -45,26 +46,23 @@ class Zone:
     equation
         (n, 2) equations of all nodes.
     shape
-        (nz, nn) values of the nodes' shape functions at the points; None where the points are the
-        nodes.
+        (nz, nn) values of the nodes' shape functions at the points.
     softness
         (nz, nz) m^2/N, what forces add to the gaps beside what the body yields, and softness_along
-        what tangential ones add to the slips; None: nothing.
+        what tangential ones add to the slips.
     condensed
         (nc,) ascending equation numbers.
     """
 
     nodes: np.ndarray
     equation: np.ndarray
-    shape: np.ndarray = None  # type: ignore[assignment]  # __post_init__ has it
-    softness: np.ndarray | None = None
-    softness_along: np.ndarray | None = None
+    shape: np.ndarray
+    softness: np.ndarray
+    softness_along: np.ndarray
     condensed: np.ndarray = field(init=False)
 
     def __post_init__(self):
         equation = self.equation[self.nodes]
-        if self.shape is None:
-            self.shape = np.eye(len(self.nodes))
         self.condensed = np.unique(equation[equation >= 0])
         # of each point the columns of its nodes' degrees of freedom, x before y, and the shape
         # functions; none where prescribed
@@ -102,49 +100,35 @@ class Zone:
             minlength=len(self.condensed),
         )
 
-    def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along
-        ``direction`` (nz, 2).
-        """
-        out = matrix.copy()
-        kernels.bend(out, self._columns, self._values, direction, weight)
-        return out
-
     @property
     def movable(self) -> np.ndarray:
         """(nz,) bool: can the point move either way?"""
         return (self._values != 0).any(axis=1).all(axis=1)
 
+    def _chosen(self, rows: np.ndarray) -> Zone:
+        """The zone with some of its points (k,), or with some of them twice."""
+        out, square = copy(self), np.ix_(rows, rows)
+        out.shape, out._columns, out._values = (
+            each[rows] for each in (self.shape, self._columns, self._values)
+        )
+        out.softness, out.softness_along = self.softness[square], self.softness_along[square]
+        return out
+
     def part(self, rows: slice) -> Zone:
         """Some of its points, with the degrees of freedom of their nodes."""
         if rows == slice(0, len(self)):
             return self
-        out, columns, values = copy(self), self._columns[rows], self._values[rows]
-        used = np.unique(columns[values != 0])
+        out = self._chosen(np.arange(len(self))[rows])
+        used = np.unique(out._columns[out._values != 0])
         out.condensed = self.condensed[used]
-        out._columns, out._values = np.where(values != 0, np.searchsorted(used, columns), 0), values
-        nodes = (self.shape[rows] != 0).any(axis=0)
-        out.nodes, out.shape = self.nodes[nodes], self.shape[rows][:, nodes]
-        if self.softness is not None and self.softness_along is not None:
-            out.softness, out.softness_along = (
-                each[rows, rows] for each in (self.softness, self.softness_along)
-            )
+        out._columns = np.where(out._values != 0, np.searchsorted(used, out._columns), 0)
+        nodes = (out.shape != 0).any(axis=0)
+        out.nodes, out.shape = self.nodes[nodes], out.shape[:, nodes]
         return out
 
     def doubled(self, which: np.ndarray) -> Zone:
         """The zone with a second row for some of its points (k,), after all others."""
-        rows = np.concatenate([np.arange(len(self)), which])
-        out = copy(self)
-        out.shape, out._columns, out._values = (
-            self.shape[rows],
-            self._columns[rows],
-            self._values[rows],
-        )
-        if self.softness is not None and self.softness_along is not None:
-            out.softness, out.softness_along = (
-                each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along)
-            )
-        return out
+        return self._chosen(np.concatenate([np.arange(len(self)), which]))
 
 
 @dataclass
@@ -159,7 +143,7 @@ class Rows:
         (nr,) or slice, where the stepper keeps what belongs to them: by the number of the skin's
         point, and for a second side that many points further on.
     partner
-        (nr,) the row of the same point's other side or -1; None where no point has two.
+        (nr,) the row of the same point's other side or -1.
     gap
         (nr,) m.
     gradient
@@ -170,7 +154,7 @@ class Rows:
 
     zone: Zone
     place: slice | np.ndarray
-    partner: np.ndarray | None
+    partner: np.ndarray
     gap: np.ndarray
     gradient: np.ndarray
     curvature: np.ndarray
@@ -178,16 +162,10 @@ class Rows:
     @property
     def points(self) -> int:
         """How many points of the zone they are of."""
-        return (
-            len(self.gap)
-            if self.partner is None
-            else len(self.gap) - int(np.sum(self.partner >= 0)) // 2
-        )
+        return len(self.gap) - int(np.sum(self.partner >= 0)) // 2
 
     def of_points(self, values: np.ndarray) -> np.ndarray:
         """Sum (nz, ...) over the rows (nr, ...) of each point."""
-        if self.partner is None:
-            return values
         out, second = values[: self.points].copy(), slice(self.points, None)
         out[self.partner[second]] += values[second]
         return out
@@ -196,7 +174,7 @@ class Rows:
         """(nr,) m, the gaps that forces (nr,) N/m close: with what the zone's softness adds to
         them.
         """
-        return self.gap if self.zone.softness is None else self.gap + self.zone.softness @ force
+        return self.gap + self.zone.softness @ force
 
 
 @dataclass
@@ -244,9 +222,8 @@ def _inverse(matrix: np.ndarray) -> tuple[np.ndarray, bool]:
     factor, failed = dpotrf(np.ascontiguousarray(matrix).T, lower=0)
     if failed:
         return np.linalg.inv(matrix), False
-    inverse = dpotri(factor, lower=0, overwrite_c=1)[0].T
-    kernels.mirror(inverse)
-    return inverse, True
+    lower = np.tril(dpotri(factor, lower=0, overwrite_c=1)[0].T)
+    return lower + np.tril(lower, -1).T, True
 
 
 @dataclass
@@ -260,32 +237,30 @@ class Flexibility:
     inverse
         Of it.
     definite
-        Is it positive definite? border: (nc,) and corner, what that term adds where the profile's
-        depth comes in; None where there is no such term.
+        Is it positive definite?
+    bent
+        Is there a geometric term?
+    border, corner
+        (nc,) and a number: what that term adds where the profile's depth comes in.
     """
 
     matrix: np.ndarray
     inverse: np.ndarray
     definite: bool
-    border: np.ndarray | None
+    bent: bool
+    border: np.ndarray
     corner: float
 
     @classmethod
-    def of(cls, zone: Zone, schur, gradient, curvature, previous_force) -> Flexibility:
+    def of(cls, rows: Rows, schur, previous_force) -> Flexibility:
         """Arguments as in :func:`solve_contact`."""
-        matrix, border, corner = schur, None, 0.0
-        bent = previous_force * curvature
-        if np.any(bent != 0):
-            tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-            matrix = zone.bend(schur, tangent, bent)
-            border = -zone.spread((bent * tangent[:, 1])[:, None] * tangent)
-            corner = -float(bent @ tangent[:, 1] ** 2)
-        return cls(matrix, *_inverse(matrix), border, corner)
-
-    @property
-    def bent(self) -> bool:
-        """Is there a geometric term?"""
-        return self.border is not None
+        bent = previous_force * rows.curvature
+        on = bent != 0
+        tangent, weight = tangents(rows.gradient), bent[on]
+        along = rows.zone.gather(tangent)[on]
+        matrix = schur - along.T @ (weight[:, None] * along)
+        border, corner = -along.T @ (weight * tangent[on, 1]), -weight @ tangent[on, 1] ** 2
+        return cls(matrix, *_inverse(matrix), bool(on.any()), border, float(corner))
 
 
 @dataclass
@@ -316,15 +291,13 @@ class Response:
     _directions: list[np.ndarray]
     _inverse: np.ndarray
     _unloaded: np.ndarray
-    _bend: np.ndarray | None
+    _bend: np.ndarray
 
     def displacement(self, multipliers: np.ndarray, depth_change: float) -> np.ndarray:
         """(nc,) condensed displacement."""
         each = multipliers.reshape(len(self._directions), -1, 1)
-        out = self._unloaded + self._inverse @ self._zone.spread(
-            np.sum(each * self._directions, axis=0)
-        )
-        return out if self._bend is None else out - self._bend * depth_change
+        forces = self._zone.spread(np.sum(each * self._directions, axis=0))
+        return self._unloaded + self._inverse @ forces - self._bend * depth_change
 
 
 def respond(
@@ -340,33 +313,35 @@ def respond(
         Of (nz, 2) unit vectors, each giving nz rows: the normals, and the tangents where there is
         friction.
     """
-    inverse, corner = flexible.inverse, flexible.corner
-    lever = np.concatenate([direction[:, 1] for direction in directions])
-    unloaded = inverse @ right
+    inverse, border = flexible.inverse, flexible.border
+    unloaded, bend, each = inverse @ right, inverse @ border, len(zone)
     compliance = zone.along(directions, zone.along(directions, inverse).T)
-    free = zone.along(directions, unloaded[:, None])[:, 0]
-    if zone.softness is not None:
-        each = len(zone)
-        compliance[:each, :each] += zone.softness
-        if len(directions) > 1:
-            compliance[each:, each:] += zone.softness_along
-    load_shift, bend = 0.0, None
-    if flexible.border is not None:
-        bend = inverse @ flexible.border
-        lever = lever - zone.along(directions, bend[:, None])[:, 0]
-        corner -= float(flexible.border @ bend)
-        load_shift = float(flexible.border @ unloaded)
+    compliance[:each, :each] += zone.softness
+    if len(directions) > 1:
+        compliance[each:, each:] += zone.softness_along
+    free, bent = zone.along(directions, np.column_stack([unloaded, bend])).T
+    lever = np.concatenate([direction[:, 1] for direction in directions]) - bent
+    corner, load_shift = flexible.corner - float(border @ bend), float(border @ unloaded)
     return Response(
         compliance, free, lever, corner, load_shift, zone, directions, inverse, unloaded, bend
     )
 
 
+def controlled(
+    answer: Response, offset: np.ndarray, force: float | None, depth_change: float | None
+) -> tuple[np.ndarray, float | None]:
+    """Offsets (nr,) m of the rows without forces, and the load of the depth's own equation; None if
+    the depth is given.
+    """
+    if depth_change is None:
+        return offset, cast(float, force) - answer.load_shift
+    return offset + answer.lever * depth_change, None
+
+
 def until_stable(
     attempt: Callable[[Flexibility], ContactStep],
-    zone,
+    rows: Rows,
     schur,
-    gradient,
-    curvature,
     previous_force,
     flexible: Flexibility | None,
 ) -> ContactStep:
@@ -381,13 +356,15 @@ def until_stable(
     """
     before, softened = flexible, False
     while True:
-        flexible = flexible or Flexibility.of(zone, schur, gradient, curvature, previous_force)
+        flexible = flexible or Flexibility.of(rows, schur, previous_force)
         try:
             step = attempt(flexible)
         except ContactError as error:
             if flexible is not before:
-                schur, curvature = _soften(error, schur, curvature, previous_force, flexible.bent)
-                softened = True
+                schur, curvature = _soften(
+                    error, schur, rows.curvature, previous_force, flexible.bent
+                )
+                rows, softened = replace(rows, curvature=curvature), True
             flexible = None
             continue
         step.softened = softened
@@ -452,19 +429,19 @@ def solve_contact(
 
     def attempt(flexible):
         answer = respond(rows.zone, flexible, right, [rows.gradient])
-        offset, load = rows.gap + answer.free, None
-        if depth_change is None:
-            load = force - answer.load_shift
-        else:
-            offset = offset + answer.lever * depth_change
+        offset, load = controlled(answer, rows.gap + answer.free, force, depth_change)
         f, found, on = _pivot(answer, offset, load, active)
         dd = found if depth_change is None else depth_change
         require_stable(flexible, answer.compliance, on)
         yields = pressing_stiffness(answer, answer.compliance[np.ix_(on, on)], np.flatnonzero(on))
         return ContactStep(answer.displacement(f, dd), dd, f, on, flexible, yields)
 
-    geometry = rows.gradient, rows.curvature
-    return until_stable(attempt, rows.zone, schur, *geometry, previous_force, flexible)
+    return until_stable(attempt, rows, schur, previous_force, flexible)
+
+
+def tangents(gradient: np.ndarray) -> np.ndarray:
+    """(n, 2) tangents belonging to gap gradients (n, 2)."""
+    return np.column_stack([-gradient[:, 1], gradient[:, 0]])
 
 
 def pressing_stiffness(

@@ -19,7 +19,7 @@ import numpy as np
 
 from fingerpad.laws import NEO_HOOKE, Assigned
 from fingerpad.mechanics import kernels
-from fingerpad.mechanics.space import Space, blocked
+from fingerpad.mechanics.space import TOGETHER, Space
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.materials import Prony
 
@@ -48,16 +48,13 @@ class FiniteStrainBody:
     ----------
     u : (n, 2) m
         Displacement.
+    factor : float
+        Share of the long-term isochoric stress that answers at once in the step begun last.
     smallest_jacobian : float
         Smallest det F of the last evaluation.
     """
 
     geometrically_linear = False
-
-    @property
-    def factor(self) -> float:
-        """Share of the long-term isochoric stress that answers at once in the step begun last."""
-        return self._factor
 
     def __init__(
         self,
@@ -83,25 +80,21 @@ class FiniteStrainBody:
         ]
         self._volume = np.zeros((len(space.cells), space.psi.shape[2]))
         self._dilatation = self._volume.copy()
-        self._about = self.u, self._volume.copy()
-        undeformed = blocked(
-            np.tile(
-                [[1.0], [1.0], [0.0], [0.0]], (*space.weight.shape[:1], 1, space.weight.shape[1])
-            )
-        )
+        undeformed = np.zeros((len(space.mesh[3]), 4, *space.weight.shape[1:], TOGETHER))
+        undeformed[:, [0, 1, 3]] = 1.0
+        self._history = np.zeros(undeformed.shape)
+        self._stretch = undeformed
         self.branches = Branches(prony, undeformed.shape) if prony else None
-        self._factor = 1.0
-        self._history: np.ndarray | None = None
-        self.branch_work = 0.0
-        self._stretch = np.ascontiguousarray(undeformed[:, :3]) if prony else None
-        self._pointwise = None if pointwise is None else pointwise * self.shear
-        self.smallest_jacobian = 1.0
-        self._data: np.ndarray | None = None
+        self.factor, self.branch_work, self.smallest_jacobian = 1.0, 0.0, 1.0
+        self._pointwise = (pointwise or 0.0) * self.shear
+        self._data = space.pattern.new_data()
+        #: Derivative of the volume at the tangent made last, (ne nm, 2 n).
+        self.rates = space.volume_rates()
 
     def begin_step(self, dt: float) -> None:
         """Prepare a step of ``dt`` seconds (None: no time passes)."""
         if self.branches is not None:
-            self._factor, self._history = self.branches.begin(dt)
+            self.factor, self._history = self.branches.begin(dt)
 
     def displace(self, u: np.ndarray, dilatation: np.ndarray | None = None) -> np.ndarray:
         """Put the body at ``u`` (a predictor); the dilatation (ne, nm) becomes that of ``u`` unless
@@ -116,25 +109,21 @@ class FiniteStrainBody:
             self._dilatation = self._volume.copy()
         return force
 
-    def internal_force(self) -> np.ndarray:
-        """(n, 2) N/m at the current displacement and dilatation."""
-        force = np.zeros_like(self.u)
+    def _run(self, loop: str, *out) -> None:
+        """Run a loop over the elements of every law, into ``out``."""
+        dilatation = self._dilatation if self.lagged else self._volume
+        pressures = dilatation, self._volume, self._history, self.factor, self._pointwise
         self.smallest_jacobian = min(
-            loops.internal_force(
-                self.u,
-                self.space.mesh,
-                self.shear,
-                self.bulk,
-                *part,
-                self._history,
-                self._factor,
-                self._pointwise,
-                self._dilatation if self.lagged else self._volume,
-                self._volume,
-                force,
+            getattr(loops, loop)(
+                self.u, self.space.mesh, self.shear, self.bulk, *part, *pressures, *out
             )
             for loops, *part in self._loops
         )
+
+    def internal_force(self) -> np.ndarray:
+        """(n, 2) N/m at the current displacement and dilatation."""
+        force = np.zeros_like(self.u)
+        self._run("internal_force", force)
         if not self.lagged:
             self._dilatation = self._volume.copy()
         return force
@@ -144,29 +133,11 @@ class FiniteStrainBody:
         (n, 2) that goes with them: the internal one and kappa B^T (v - d), which together are that
         of a dilatation that is the displacement's.
         """
-        if self._data is None:
-            self._data = self.space.pattern.new_data()
         self._data[:] = 0
         force = np.zeros_like(self.u)
-        self.smallest_jacobian = min(
-            loops.assemble_tangent(
-                self.u,
-                self.space.mesh,
-                self.shear,
-                self.bulk,
-                *part,
-                self._dilatation if self.lagged else self._volume,
-                self._volume,
-                self._history,
-                self._factor,
-                self._pointwise,
-                self.space.pattern.scatter,
-                self._data,
-                force,
-            )
-            for loops, *part in self._loops
-        )
-        self._about = self.u, self._volume.copy()
+        rates = self.rates.data.reshape(*self._volume.shape, 2, -1)
+        scatter = self.space.pattern.scatter
+        self._run("assemble_tangent", force, scatter, self._data, rates)
         return self._data, force
 
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
@@ -180,24 +151,16 @@ class FiniteStrainBody:
         """The force (n, 2) that goes with the tangent that was factored last, wherever that was, of
         the ``internal`` one here.
         """
-        force = internal.copy()
-        amiss = self._volume - self._dilatation
-        kernels.volume_loop(*self.space.sizes)(
-            self._about[0], amiss, self.space.mesh, self.space.all_blocks, self.bulk, force
-        )
-        return force
+        pressures = self.bulk[:, None] * (self._volume - self._dilatation)
+        return internal + (self.rates.T @ pressures.ravel()).reshape(internal.shape)
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
         """Accept ``share`` of the linear step ``du`` (n, 2), and the dilatation that it leads
         to.
         """
-        about, before = self._about
-        found = np.empty_like(self._volume)
-        kernels.dilatation_loop(*self.space.sizes)(
-            about, share * du, self.space.mesh, self.space.all_blocks, found
-        )
-        self._dilatation = self._volume + (found - before)
-        self.u = self.u + share * du
+        step = share * du
+        self._dilatation = self._volume + (self.rates @ step.ravel()).reshape(self._volume.shape)
+        self.u = self.u + step
 
     def volume_amiss(self) -> tuple[float, float]:
         """What the displacement's dilatation and its own differ by, and its own, as norms of
@@ -215,11 +178,8 @@ class FiniteStrainBody:
         if self.branches is not None:
             branches = self.branches
             before = branches.q, branches.last, self._stretch
-            after = [np.empty_like(each) for each in before]
-            for each in after:
-                each[..., -1, :, :, :] = (
-                    0.0  # the last block may have room for more elements than there are
-                )
+            # the last block may have room for more elements than there are, which stays empty
+            after = [np.zeros(values.shape) for values in before]
             self.branch_work += sum(
                 loops.commit(
                     self.u,
@@ -263,13 +223,13 @@ class FiniteStrainBody:
         integral of the branches' second Piola-Kirchhoff stress over the Green strain, by the
         trapezoidal rule, so a hold of any length adds none.
         """
-        springs = (
-            (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
-        )
+        beta, stress = np.empty(0), self._history[None][:0]
+        if self.branches is not None:
+            beta, stress = self.branches.prony.beta, self.branches.q
         network, spring = np.sum(
             [
                 loops.energies(
-                    self.u, self.space.mesh, self.shear, *part, self._pointwise, *springs
+                    self.u, self.space.mesh, self.shear, *part, self._pointwise, beta, stress
                 )
                 for loops, *part in self._loops
             ],
@@ -302,9 +262,16 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
     shear
         (np,) long-term moduli, Pa.
     """
-    out = np.empty((len(cells), 4))
+    f = np.eye(2) + np.einsum("pai,paj->pij", u[cells], grad)
+    c = f.swapaxes(-1, -2) @ f
+    i1, jac = _invariants(f)
+    out = np.empty((len(f), 4))
     for part in laws:
-        kernels.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
+        here = part.elements
+        mod, t = part.law.stress(i1[here], jac[here], shear[here], part.constants[here].T)
+        cofactor = np.stack([c[here, 1, 1], c[here, 0, 0], -c[here, 0, 1], jac[here] ** 2], axis=1)
+        share = t / (3 * jac[here] ** 2)
+        out[here] = mod[:, None] * ([1, 1, 0, 1] - share[:, None] * cofactor)
     return out
 
 
@@ -312,16 +279,19 @@ def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarra
     """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,)
     or (ne, 1), Pa.
     """
-    i1, jac = (
-        np.sum(f * f, axis=(-2, -1)) + 1,
-        f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0],
-    )
+    i1, jac = _invariants(f)
     out = np.zeros(i1.shape)
     for part in laws:
         here = part.elements
         constants = part.constants[here].T.reshape(len(part.law.constants), *shear[here].shape)
         out[here] = part.law.energy(i1[here], jac[here], shear[here], constants)
     return out
+
+
+def _invariants(f):
+    """I1 and J (...) of deformation gradients (..., 2, 2) in plane strain."""
+    jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
+    return np.sum(f * f, axis=(-2, -1)) + 1, jac
 
 
 def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:

@@ -25,9 +25,11 @@ from fingerpad.mechanics.contact import (
     ContactStep,
     Flexibility,
     Rows,
+    controlled,
     pressing_stiffness,
     require_stable,
     respond,
+    tangents,
     until_stable,
 )
 
@@ -117,17 +119,12 @@ class Coulomb:
         """
         zone, part = rows.zone, rows.place
         tangent = tangents(rows.gradient)
-        moved = np.einsum("ni,ni->n", motion, tangent)
-        if zone.softness_along is not None:
-            moved = moved - zone.softness_along @ self._before[part]
+        moved = np.einsum("ni,ni->n", motion, tangent) - zone.softness_along @ self._before[part]
 
         def attempt(flexible):
             answer = respond(zone, flexible, right, [rows.gradient, tangent])
-            offset, load = answer.free + np.concatenate([rows.gap, moved]), None
-            if depth_change is None:
-                load = force - answer.load_shift
-            else:
-                offset = offset + answer.lever * depth_change
+            offset = answer.free + np.concatenate([rows.gap, moved])
+            offset, load = controlled(answer, offset, force, depth_change)
             f, tau, found, on, state, yields = _solve(
                 self.coefficient, answer, offset, load, active, self.state[part], rows.partner
             )
@@ -138,8 +135,7 @@ class Coulomb:
                 du, dd, f, on, flexible, stiffness=yields, tangential=tau, state=state
             )
 
-        geometry = rows.gradient, rows.curvature
-        return until_stable(attempt, zone, schur, *geometry, previous_force, flexible)
+        return until_stable(attempt, rows, schur, previous_force, flexible)
 
     def accept(self, part: slice, step: ContactStep) -> None:
         """Take over forces and states of a solution."""
@@ -158,15 +154,14 @@ class Coulomb:
         active: np.ndarray,
         gradient: np.ndarray,
         motion: np.ndarray,
-        softness=None,
+        softness: np.ndarray,
     ) -> float:
         """Record the slip; returns the largest one (m) of a point that should stick. softness:
         along the skin, of the zone.
         """
         self.slip[:] = 0
         slip = np.einsum("ni,ni->n", motion, tangents(gradient))
-        if softness is not None:
-            slip = slip + softness @ (self.tangential - self._before)[part]
+        slip = slip + softness @ (self.tangential - self._before)[part]
         self.slip[part] = slip * active
         return float(np.abs(self.slip[part][self.state[part] == STICK]).max(initial=0.0))
 
@@ -200,16 +195,11 @@ class Coulomb:
         return tangential, slip, np.where(on, np.where(slides, 2, 1), 0).astype(np.int8)
 
 
-def tangents(gradient: np.ndarray) -> np.ndarray:
-    """(n, 2) tangents belonging to gap gradients (n, 2)."""
-    return np.column_stack([-gradient[:, 1], gradient[:, 0]])
-
-
 class _Cycling(ContactError):
     """No consistent set of states was found."""
 
 
-def _solve(mu, answer, offset, load, active, state, partner=None):
+def _solve(mu, answer, offset, load, active, state, partner):
     """Forces f and tau, depth change, closed gaps, states and stiffness of the linearised problem.
 
     A node that comes into contact slips at first, against its motion: entering as sticking makes
@@ -217,26 +207,23 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
     other way round. If neither ends, Tresca's problem (given bounds of the friction, which always
     has a solution) is solved again and again with the bounds that its own pressures give.
     """
+    problem = answer, offset, load, partner
     for entering_sticks in (False, True):
         try:
-            return _exchange(
-                mu, answer, offset, load, active, state, entering_sticks, partner=partner
-            )
+            return _exchange(mu, *problem, active, state, entering_sticks)
         except _Cycling:
             pass
-    f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
+    f, bound = _exchange(0.0, *problem, active, 0 * state)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        found = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
+        found = _exchange(mu, *problem, active, state, bound=bound)
         f, _, _, active, state, _ = found
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
             return found
     raise _Cycling("stick and slip keep cycling")
 
 
-def _exchange(
-    mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None
-):
+def _exchange(mu, answer, offset, load, partner, active, state, entering_sticks=False, bound=None):
     """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu
     times the normal force.
 
@@ -249,25 +236,24 @@ def _exchange(
     if not active.any() and load is not None:
         nearest = np.argmin(offset[:n])
         active[nearest], state[nearest] = True, -np.sign(offset[n + nearest])
-    yielding = np.abs(
-        np.diag(a)[n:]
-    )  # below zero where a load on a sharp curve outweighs the body: it yields all the same
-    held = yielding <= 1e-12 * yielding.max(
-        initial=0.0
-    )  # cannot move along the tangent: a wall carries its friction
+    # below zero where a load on a sharp curve outweighs the body: it yields all the same
+    yielding = np.abs(np.diag(a)[n:])
+    # cannot move along the tangent: a wall carries its friction
+    held = yielding <= 1e-12 * yielding.max(initial=0.0)
     state[held] = -np.sign(offset[n:][held])
     stiffness = 0.5 / np.where(held, np.inf, yielding)
     scale = max(np.abs(offset).max(), 1e-12)
     best, patience, seen, single = 2 * n + 1, 10, set(), set()
     for exchange in range(1, 60 + 2 * n):
-        free = np.ones(n, bool) if partner is None else ~((partner >= 0) & active & active[partner])
+        free = ~((partner >= 0) & active & active[partner])
         on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held & free)
         share = mu * state * free if bound is None else np.zeros(n)
         given = np.zeros(n) if bound is None else bound * state * (active & free)
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
-        system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
-        kernels.exchanged(a, share, on, stick, system)
+        transposed, right = np.empty((size, size)), np.zeros((size, 2))
+        kernels.exchanged(a, share, on, stick, transposed)
+        system = transposed.T
         needed = offset if bound is None else offset + a[:, n:] @ given
         right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:
@@ -289,16 +275,14 @@ def _exchange(
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
         sliding = active & (state != STICK) & ~wrong & ~held & free
         most = mu * np.maximum(f, 0) if bound is None else bound
-        slides = (
-            active & (state == STICK) & ~wrong & free & (np.abs(tau) > most * (1 + 1e-10) + tiny)
-        )
+        over = np.abs(tau) > most * (1 + 1e-10) + tiny
+        slides = active & (state == STICK) & ~wrong & free & over
         sticks = sliding & (state * slip > 1e-11 * scale)
         count = int(wrong.sum() + slides.sum() + sticks.sum())
         if not count:
             f[~active] = tau[~active] = 0
-            state = np.where(
-                free | (state != STICK), state, 1
-            )  # held fast, though it may have come a long way in this step
+            # held fast, though it may have come a long way in this step
+            state = np.where(free | (state != STICK), state, 1)
             if load is None:
                 yields = pressing_stiffness(answer, system, np.concatenate([on, n + stick]), share)
             # what is left of the depth's own equation: the second solution is of a unit of it
@@ -327,9 +311,8 @@ def _exchange(
         state = np.where(entering, 0 if entering_sticks else -np.sign(slip), state).astype(int)
         flipped = active ^ wrong
         if load is not None and not flipped.any():
-            only = np.argmax(
-                np.where(active, f, -np.inf)
-            )  # someone must carry the force, if not in this state then in the next
+            # someone must carry the force, if not in this state then in the next
+            only = np.argmax(np.where(active, f, -np.inf))
             flipped[only], state[only] = True, (state[only] + 2) % 3 - 1
         active = flipped
     raise _Cycling("stick and slip keep cycling")

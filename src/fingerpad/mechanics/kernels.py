@@ -12,7 +12,7 @@ operator ``d(cof F) = C0 : dF`` of two dimensions, and the law's ``m, t`` and ``
 so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it
 is drawn back to the reference cell, whose gradients are the same for all elements, and the loops
 are compiled for the sizes of the element they are of. ``H`` is the (symmetric) history stress of
-the Prony branches; passing ``None`` compiles a kernel in which it does not exist. ``p_lag`` is the
+the Prony branches, zero without: one loop, compiled once, serves both. ``p_lag`` is the
 pressure the last linear step predicted (mixed integration point; Magisano, Leonetti and Garcea
 2017), while the residual keeps the true one.
 
@@ -84,20 +84,16 @@ def _isochoric_factor(jac):
 
 
 @njit(**_INLINE)
-def _isochoric(mod, t, i1, c11, c22, c12, jac):
-    """Isochoric second Piola-Kirchhoff stress m (I - t/3 C^-1), free of mean: 11, 22, 12, 33."""
-    s = t / (3.0 * jac * jac)
-    return (
-        mod * (1.0 - s * c22),
-        mod * (1.0 - s * c11),
-        mod * s * c12,
-        mod * ((1.0 - t / 3.0) + (t - i1)),
-    )
+def _four(values, q, k):
+    """Components 11, 12, 21, 22 at a point of an element."""
+    return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
 
 
 @njit(**_INLINE)
-def _spring(f11, f12, f21, f22, s11, s22, s12, t33):
-    """tau : tau of the pushed-forward deviatoric stress of a branch."""
+def _spring(f, stress):
+    """tau : tau of the pushed-forward deviatoric stress (11, 22, 12, 33) of a branch."""
+    f11, f12, f21, f22 = f
+    s11, s22, s12, t33 = stress
     a11 = f11 * s11 + f12 * s12
     a12 = f11 * s12 + f12 * s22
     a21 = f21 * s11 + f22 * s12
@@ -110,40 +106,12 @@ def _spring(f11, f12, f21, f22, s11, s22, s12, t33):
 
 
 @njit(**_JIT)
-def bend(matrix, columns, values, direction, weight):
-    """Take ``weight`` (nz,) times the square of the points' displacement along ``direction`` (nz,
-    2) off a matrix (nc, nc).
-
-    ``columns``, ``values`` (nz, nodes, 2): of each point the degrees of freedom of its nodes and
-    the shape functions.
-    """
-    for k in range(len(weight)):
-        if weight[k] == 0.0:
-            continue
-        for a in range(columns.shape[1]):
-            for i in range(2):
-                here = weight[k] * values[k, a, i] * direction[k, i]
-                for b in range(columns.shape[1]):
-                    for j in range(2):
-                        matrix[columns[k, a, i], columns[k, b, j]] -= (
-                            here * values[k, b, j] * direction[k, j]
-                        )
-
-
-@njit(**_JIT)
-def mirror(matrix):
-    """Fill the upper triangle with the lower one."""
-    for i in range(len(matrix)):
-        for j in range(i):
-            matrix[j, i] = matrix[i, j]
-
-
-@njit(**_JIT)
 def at_points(columns, values, directions, matrix, out):
     """Components along ``directions`` (nd, nz, 2) at the points of each column of ``matrix`` (nc,
     n), into ``out`` (nd nz, n).
 
-    ``columns`` and ``values`` as of :func:`bend`.
+    ``columns``, ``values`` (nz, nodes, 2): of each point the degrees of freedom of its nodes and
+    the shape functions.
     """
     points, wide = len(columns), matrix.shape[1]
     along = np.empty((2, wide))
@@ -163,8 +131,8 @@ def at_points(columns, values, directions, matrix, out):
 
 @njit(**_JIT)
 def exchanged(compliance, share, on, stick, out):
-    """How points answer to multipliers of their own: (no + ns, no + ns), column by column into
-    ``out``.
+    """How points answer to multipliers of their own: (no + ns, no + ns) into ``out``, a row for
+    each multiplier.
 
     ``compliance`` (2 nz, 2 nz), symmetric, of normal and tangential multipliers; ``on`` (no,)
     points with normal ones, each of which brings a ``share`` (nz,) of it along the tangent;
@@ -174,107 +142,15 @@ def exchanged(compliance, share, on, stick, out):
     for c in range(touching):
         normal, tangential, part = compliance[on[c]], compliance[points + on[c]], share[on[c]]
         for r in range(touching):
-            out[r, c] = normal[on[r]] + part * tangential[on[r]]
+            out[c, r] = normal[on[r]] + part * tangential[on[r]]
         for r in range(len(stick)):
-            out[touching + r, c] = normal[points + stick[r]] + part * tangential[points + stick[r]]
+            out[c, touching + r] = normal[points + stick[r]] + part * tangential[points + stick[r]]
     for c in range(len(stick)):
         tangential = compliance[points + stick[c]]
         for r in range(touching):
-            out[r, touching + c] = tangential[on[r]]
+            out[touching + c, r] = tangential[on[r]]
         for r in range(len(stick)):
-            out[touching + r, touching + c] = tangential[points + stick[r]]
-
-
-@njit(**_INLINE)
-def _deform(nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f):
-    """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5,
-    nq, ...).
-
-    ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their
-    gradients on the reference cell.
-    Returns the smallest determinant.
-    """
-    for k in range(first, last):
-        for a in range(nodes):
-            local[0, a, k] = u[cells[start + k, a], 0]
-            local[1, a, k] = u[cells[start + k, a], 1]
-    for i in range(2):
-        for c in range(2 * points):
-            for k in range(first, last):
-                total = 0.0
-                for a in range(nodes):
-                    total += local[i, a, k] * reference[a, c]
-                drawn[i, c, k] = total
-    smallest = np.inf
-    for q in range(points):
-        low = np.inf
-        for k in range(first, last):
-            i11, i12, i21, i22 = _four(inverse, q, k)
-            x1, x2, y1, y2 = (
-                drawn[0, q, k],
-                drawn[0, points + q, k],
-                drawn[1, q, k],
-                drawn[1, points + q, k],
-            )
-            f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
-            f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
-            jac = f11 * f22 - f12 * f21
-            f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
-            low = min(low, jac)
-        smallest = min(smallest, low)
-    return smallest
-
-
-@njit(**_INLINE)
-def _project(points, modes, weight, psi, first, last, f, theta):
-    """Their dilatation modes into ``theta`` (nm, ...)."""
-    for m in range(modes):
-        for k in range(first, last):
-            total = 0.0
-            for q in range(points):
-                total += weight[q, k] * psi[m, q, k] * (f[4, q, k] - 1.0)
-            theta[m, k] = total
-
-
-@njit(**_INLINE)
-def _to_nodes(nodes, points, reference, first, last, drawn, local):
-    """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
-    ``local`` (2, nen, ...).
-    """
-    for i in range(2):
-        for a in range(nodes):
-            for k in range(first, last):
-                total = 0.0
-                for c in range(2 * points):
-                    total += drawn[i, c, k] * reference[a, c]
-                local[i, a, k] = total
-
-
-@njit(**_INLINE)
-def _add(nodes, cells, start, first, last, local, force):
-    """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
-    for k in range(first, last):
-        for a in range(nodes):
-            force[cells[start + k, a], 0] += local[0, a, k]
-            force[cells[start + k, a], 1] += local[1, a, k]
-
-
-@njit(**_INLINE)
-def _four(values, q, k):
-    """Components 11, 12, 21, 22 at a point of an element."""
-    return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
-
-
-@njit(**_INLINE)
-def _swap_volumes(modes, start, first, last, theta, volume, dilatation, out):
-    """Store modes ``theta`` in ``volume`` (ne, nm) and read ``dilatation`` (ne, nm), which may be
-    the same array, into ``out`` (nm, ...).
-    """
-    for m in range(modes):
-        for k in range(first, last):
-            volume[start + k, m] = theta[m, k]
-        for k in range(first, last):
-            out[m, k] = dilatation[start + k, m]
+            out[touching + c, touching + r] = tangential[points + stick[r]]
 
 
 @njit(**_INLINE)
@@ -295,92 +171,16 @@ def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     return n
 
 
-def _compiled(loop: Callable, law: Law | None, *sizes: int):
+def _compiled(loop: Callable, law: Law, *sizes: int):
     """A loop, compiled for a law and the sizes of an element.
 
     Its cache file is named after both and the law's source: processes that compile different ones
     at once keep apart, and an edited law is compiled again. The loops of a law from outside this
     package, whose helpers are not known, are not kept.
     """
-    options = _JIT
-    if law is not None:
-        loop.__qualname__ += f"-{law.name}-{law.source[:16]}"
-        if not law.stress.__module__.startswith("fingerpad."):
-            options = _JIT | {"cache": False}
-    loop.__qualname__ += "".join(f"-{size}" for size in sizes)
-    return njit(**options)(loop)
-
-
-@cache
-def dilatation_loop(nodes: int, points: int, modes: int):
-    """The loop that predicts dilatations, for elements of these sizes."""
-
-    def predict_dilatation(u, du, mesh, blocks, out):
-        """Linear prediction ``int psi_a (J - 1 + cof F : grad du)`` of the dilatation modes, into
-        ``out`` (ne, nm).
-        """
-        cells, reference, inverses, weights, all_psi = mesh
-        together = weights.shape[2]
-        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, d = np.empty((5, points, together)), np.empty((5, points, together))
-        theta = np.empty((modes, together))
-        for block, first, last in blocks:
-            start, inverse = block * np.uint64(together), inverses[block]
-            _deform(
-                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-            )
-            _deform(
-                nodes, points, du, cells, reference, inverse, start, first, last, local, drawn, d
-            )
-            for q in range(points):
-                for k in range(first, last):
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    d11, d12, d21, d22 = _four(d, q, k)
-                    f[4, q, k] += f22 * (d11 - 1.0) - f21 * d12 - f12 * d21 + f11 * (d22 - 1.0)
-            _project(points, modes, weights[block], all_psi[block], first, last, f, theta)
-            for m in range(modes):
-                for k in range(first, last):
-                    out[start + k, m] = theta[m, k]
-
-    return _compiled(predict_dilatation, None, nodes, points, modes)
-
-
-@cache
-def volume_loop(nodes: int, points: int, modes: int):
-    """The loop for the nodal forces of pressures on a given shape, for elements of these sizes."""
-
-    def force_of_dilatation(u, dilatation, mesh, blocks, kappa, force):
-        """Nodal forces ``int kappa (psi_a dilatation_a) cof F : grad v``, accumulated in ``force``
-        (n, 2).
-
-        Shapes: u (n, 2); dilatation (ne, nm); kappa (ne,).
-        """
-        cells, reference, inverses, weights, all_psi = mesh
-        together = weights.shape[2]
-        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f = np.empty((5, points, together))
-        for block, first, last in blocks:
-            start = block * np.uint64(together)
-            inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            _deform(
-                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-            )
-            for q in range(points):
-                for k in range(first, last):
-                    p = 0.0
-                    for m in range(modes):
-                        p += psi[m, q, k] * dilatation[start + k, m]
-                    p *= kappa[start + k] * weight[q, k]
-                    i11, i12, i21, i22 = _four(inverse, q, k)
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    drawn[0, q, k] = p * (f22 * i11 - f21 * i21)
-                    drawn[0, points + q, k] = p * (f22 * i12 - f21 * i22)
-                    drawn[1, q, k] = p * (f11 * i21 - f12 * i11)
-                    drawn[1, points + q, k] = p * (f11 * i22 - f12 * i12)
-            _to_nodes(nodes, points, reference, first, last, drawn, local)
-            _add(nodes, cells, start, first, last, local, force)
-
-    return _compiled(force_of_dilatation, None, nodes, points, modes)
+    loop.__qualname__ += "".join(f"-{part}" for part in (law.name, law.source[:16], *sizes))
+    kept = _JIT["cache"] and law.stress.__module__.startswith("fingerpad.")
+    return njit(**_JIT | {"cache": kept})(loop)
 
 
 @cache
@@ -398,6 +198,79 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
+    inline = njit(**_INLINE)
+
+    @inline
+    def deform(u, mesh, block, first, last, local, drawn, f):
+        """Deformation gradient 11, 12, 21, 22 and its determinant at the points of elements of a
+        block, into ``f`` (5, nq, ...). Returns the smallest determinant.
+        """
+        cells, reference, inverses = mesh[0], mesh[1], mesh[2]
+        start, inverse = block * np.uint64(f.shape[2]), inverses[block]
+        for k in range(first, last):
+            for a in range(nodes):
+                local[0, a, k] = u[cells[start + k, a], 0]
+                local[1, a, k] = u[cells[start + k, a], 1]
+        for i in range(2):
+            for c in range(2 * points):
+                for k in range(first, last):
+                    total = 0.0
+                    for a in range(nodes):
+                        total += local[i, a, k] * reference[a, c]
+                    drawn[i, c, k] = total
+        smallest = np.inf
+        for q in range(points):
+            low = np.inf
+            for k in range(first, last):
+                i11, i12, i21, i22 = _four(inverse, q, k)
+                x1, x2 = drawn[0, q, k], drawn[0, points + q, k]
+                y1, y2 = drawn[1, q, k], drawn[1, points + q, k]
+                f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
+                f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
+                jac = f11 * f22 - f12 * f21
+                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
+                low = min(low, jac)
+            smallest = min(smallest, low)
+        return smallest
+
+    @inline
+    def project(mesh, block, first, last, f, volume, dilatation, theta, lag):
+        """Dilatation modes of ``f`` into ``theta`` (nm, ...) and ``volume`` (ne, nm); those of
+        ``dilatation`` (ne, nm), which may be the same array, into ``lag`` (nm, ...).
+        """
+        weight, psi, start = mesh[3][block], mesh[4][block], block * np.uint64(f.shape[2])
+        for m in range(modes):
+            for k in range(first, last):
+                total = 0.0
+                for q in range(points):
+                    total += weight[q, k] * psi[m, q, k] * (f[4, q, k] - 1.0)
+                theta[m, k] = total
+        for m in range(modes):
+            for k in range(first, last):
+                volume[start + k, m] = theta[m, k]
+            for k in range(first, last):
+                lag[m, k] = dilatation[start + k, m]
+
+    @inline
+    def to_nodes(reference, first, last, drawn, local):
+        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
+        ``local`` (2, nen, ...).
+        """
+        for i in range(2):
+            for a in range(nodes):
+                for k in range(first, last):
+                    total = 0.0
+                    for c in range(2 * points):
+                        total += drawn[i, c, k] * reference[a, c]
+                    local[i, a, k] = total
+
+    @inline
+    def add(cells, start, first, last, local, force):
+        """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
+        for k in range(first, last):
+            for a in range(nodes):
+                force[cells[start + k, a], 0] += local[0, a, k]
+                force[cells[start + k, a], 1] += local[1, a, k]
 
     def assemble_tangent(
         u,
@@ -411,19 +284,20 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         history,
         factor,
         pointwise,
+        force,
         scatter,
         data,
-        force,
+        rates,
     ):
         """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``, its
         pressures being of its volume.
 
         Shapes: u (n, 2); mu, kappa (ne,); dilatation (ne, nm) of the pressures in the geometric
         part; volume (ne, nm), filled with the dilatation of ``u``, which may be the same array;
-        history (blocks, 4, nq, together) second Piola-Kirchhoff 11, 22, 12, 33, or None; factor:
-        share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric
-        modulus that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last
-        one: discarded); force (n, 2), accumulated.
+        history (blocks, 4, nq, together) second Piola-Kirchhoff 11, 22, 12, 33; factor: share of
+        the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus that is
+        not projected; force (n, 2), accumulated; scatter (ne, nd(nd+1)/2) positions in ``data``
+        (last one: discarded); rates (ne, nm, 2, nen), filled with the derivative of ``volume``.
         Returns the smallest det F.
         """
         cells, reference, inverses, weights, all_psi = mesh
@@ -453,16 +327,10 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            smallest = min(
-                smallest,
-                _deform(
-                    nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-                ),
-            )
+            smallest = min(smallest, deform(u, mesh, block, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
-            _project(points, modes, weight, psi, first, last, f, theta)
-            _swap_volumes(modes, start, first, last, theta, volume, dilatation, lag)
+            project(mesh, block, first, last, f, volume, dilatation, theta, lag)
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
@@ -479,11 +347,10 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     s = mod * t / (3.0 * jac)
                     p = kappa[e] * p - s
                     cross = kappa[e] * plag - s
-                    if pointwise is not None:
-                        extra = pointwise[e] * (jac - 1.0)
-                        p += extra
-                        cross += extra
-                        beta += pointwise[e]
+                    extra = pointwise[e] * (jac - 1.0)
+                    p += extra
+                    cross += extra
+                    beta += pointwise[e]
                     answer[0, k], answer[1, k], answer[2, k] = mod, p, cross
                     answer[3, k], answer[4, k], answer[5, k] = fold, alpha, beta
                 for k in range(first, last):
@@ -491,12 +358,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     f11, f12, f21, f22 = _four(f, q, k)
                     mod, p, cross = answer[0, k], answer[1, k], answer[2, k]
                     fold, alpha, beta = answer[3, k], answer[4, k], answer[5, k]
-                    l11 = l22 = mod
-                    l12 = 0.0
-                    if history is not None:
-                        l11 += history[block, 0, q, k]
-                        l22 += history[block, 1, q, k]
-                        l12 += history[block, 2, q, k]
+                    l11, l22 = mod + history[block, 0, q, k], mod + history[block, 1, q, k]
+                    l12 = history[block, 2, q, k]
                     i11, i12, i21, i22 = _four(inverse, q, k)
                     # rows of F, its cofactor and (m I + H) J^-T on the reference cell
                     fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
@@ -534,8 +397,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     found[15, q, k] = lap11 + fy1 * ay1 + cy1 * by1
                     found[16, q, k] = lap12 + fy1 * ay2 + cy1 * by2
                     found[17, q, k] = lap22 + fy2 * ay2 + cy2 * by2
-            _to_nodes(nodes, points, reference, first, last, drawn, local)
-            _add(nodes, cells, start, first, last, local, force)
+            to_nodes(reference, first, last, drawn, local)
+            add(cells, start, first, last, local, force)
             for m in range(modes):
                 for q in range(points):
                     for k in range(first, last):
@@ -543,7 +406,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         part[0, points + q, k] = psi[m, q, k] * cofactor[1, q, k]
                         part[1, q, k] = psi[m, q, k] * cofactor[2, q, k]
                         part[1, points + q, k] = psi[m, q, k] * cofactor[3, q, k]
-                _to_nodes(nodes, points, reference, first, last, part, modal[m])
+                to_nodes(reference, first, last, part, modal[m])
             for k in range(first, last):
                 e = start + k
                 for d in range(10):
@@ -566,13 +429,14 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         right_x[2 * points + m, a] = kappa[e] * x
                         right_x[2 * points + m, nodes + a] = kappa[e] * y
                         right_y[2 * points + m, a] = kappa[e] * y
+                        rates[e, m, 0, a], rates[e, m, 1, a] = x, y
                 rows, depth, places = cells.shape[1], 2 * points + modes, scatter[e]
                 n = _add_rows(rows, 2 * nodes, depth, left[0], right_x, row, places, 0, data)
                 _add_rows(rows, nodes, depth, left[1], right_y, row, places, n, data)
         return smallest
 
     def internal_force(
-        u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force
+        u, mesh, mu, kappa, constants, blocks, dilatation, volume, history, factor, pointwise, force
     ):
         """Internal force (n, 2) of the pressures kappa times ``dilatation`` (ne, nm), accumulated
         in ``force``.
@@ -588,16 +452,10 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            smallest = min(
-                smallest,
-                _deform(
-                    nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-                ),
-            )
+            smallest = min(smallest, deform(u, mesh, block, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
-            _project(points, modes, weight, psi, first, last, f, theta)
-            _swap_volumes(modes, start, first, last, theta, volume, dilatation, theta)
+            project(mesh, block, first, last, f, volume, dilatation, theta, theta)
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
@@ -608,15 +466,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         p += psi[m, q, k] * theta[m, k]
                     i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
                     mod, t = law_stress(i1, jac, factor * mu[e], constants[:, e])
-                    p = kappa[e] * p - mod * t / (3.0 * jac)
-                    if pointwise is not None:
-                        p += pointwise[e] * (jac - 1.0)
-                    l11 = l22 = mod
-                    l12 = 0.0
-                    if history is not None:
-                        l11 += history[block, 0, q, k]
-                        l22 += history[block, 1, q, k]
-                        l12 += history[block, 2, q, k]
+                    p = kappa[e] * p - mod * t / (3.0 * jac) + pointwise[e] * (jac - 1.0)
+                    l11, l22 = mod + history[block, 0, q, k], mod + history[block, 1, q, k]
+                    l12 = history[block, 2, q, k]
                     p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
                     p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
                     w = weight[q, k]
@@ -625,8 +477,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
                     drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
                     drawn[1, points + q, k] = w * (p21 * i12 + p22 * i22)
-            _to_nodes(nodes, points, reference, first, last, drawn, local)
-            _add(nodes, cells, start, first, last, local, force)
+            to_nodes(reference, first, last, drawn, local)
+            add(cells, start, first, last, local, force)
         return smallest
 
     def commit(
@@ -644,80 +496,65 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         new_stress,
         new_stretch,
     ):
-        """Branch stresses, isochoric stress and C 11, 22, 12 after a step, into the new.
+        """Branch stresses, isochoric stress and C (11, 22, 12, 33) after a step, into the new.
 
-        Shapes: branches (nb, blocks, 4, nq, together); stress (blocks, 4, nq, together); stretch
-        (blocks, 3, nq, together). ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term
-        moduli. Returns the work done on the branches, by the trapezoidal rule, J/m.
+        Shapes: branches (nb, blocks, 4, nq, together); stress and stretch (blocks, 4, nq,
+        together). ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term moduli. Returns the
+        work done on the branches, by the trapezoidal rule, J/m.
         """
-        cells, reference, inverses, weights, _ = mesh
+        weights = mesh[3]
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, now = np.empty((5, points, together)), np.empty((7, together))
+        f, now = np.empty((5, points, together)), np.empty((8, together))
         work = 0.0
         for block, first, last in blocks:
-            start = block * np.uint64(together)
-            inverse, weight = inverses[block], weights[block]
-            _deform(
-                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-            )
+            start, weight = block * np.uint64(together), weights[block]
+            deform(u, mesh, block, first, last, local, drawn, f)
             for q in range(points):
                 for k in range(first, last):
                     f11, f12, f21, f22 = _four(f, q, k)
                     jac = f[4, q, k]
-                    c11, c22, c12 = (
-                        f11 * f11 + f21 * f21,
-                        f12 * f12 + f22 * f22,
-                        f11 * f12 + f21 * f22,
-                    )
+                    c11, c22 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22
+                    c12 = f11 * f12 + f21 * f22
                     i1 = c11 + c22 + 1.0
                     mod, t = law_stress(i1, jac, mu[start + k], constants[:, start + k])
-                    now[0, k], now[1, k], now[2, k], now[3, k] = _isochoric(
-                        mod, t, i1, c11, c22, c12, jac
-                    )
-                    now[4, k], now[5, k], now[6, k] = c11, c22, c12
+                    s = t / (3.0 * jac * jac)
+                    now[0, k], now[1, k] = mod * (1.0 - s * c22), mod * (1.0 - s * c11)
+                    now[2, k], now[3, k] = mod * s * c12, mod * ((1.0 - t / 3.0) + (t - i1))
+                    now[4, k], now[5, k], now[6, k], now[7, k] = c11, c22, c12, 1.0
                 for c in range(4):
                     # the mean of a branch's stress before and after, times the way: 12 counts
                     # twice, and C is twice E
-                    share = 0.0 if c == 3 else 0.5 if c == 2 else 0.25
+                    share = 0.5 if c == 2 else 0.25
                     for b in range(len(decay)):
                         for k in range(first, last):
-                            after = decay[b] * branches[b, block, c, q, k] + gain[b] * (
-                                now[c, k] - stress[block, c, q, k]
-                            )
-                            new_branches[b, block, c, q, k] = after
-                        if c < 3:
-                            for k in range(first, last):
-                                way = (
-                                    share * weight[q, k] * (now[4 + c, k] - stretch[block, c, q, k])
-                                )
-                                work += (
-                                    branches[b, block, c, q, k] + new_branches[b, block, c, q, k]
-                                ) * way
+                            new_branches[b, block, c, q, k] = decay[b] * branches[
+                                b, block, c, q, k
+                            ] + gain[b] * (now[c, k] - stress[block, c, q, k])
+                        for k in range(first, last):
+                            way = share * weight[q, k] * (now[4 + c, k] - stretch[block, c, q, k])
+                            work += (
+                                branches[b, block, c, q, k] + new_branches[b, block, c, q, k]
+                            ) * way
                     for k in range(first, last):
                         new_stress[block, c, q, k] = now[c, k]
-                    if c < 3:
-                        for k in range(first, last):
-                            new_stretch[block, c, q, k] = now[4 + c, k]
+                        new_stretch[block, c, q, k] = now[4 + c, k]
         return work
 
     def energies(u, mesh, mu, constants, blocks, pointwise, beta, branches):
         """Energy of the network's change of shape and that of the Maxwell springs, tau_i : tau_i /
         (4 beta_i mu), J/m.
 
-        ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together), None without.
+        ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together): none without viscoelasticity.
         """
-        cells, reference, inverses, weights, _ = mesh
+        weights = mesh[3]
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
         f = np.empty((5, points, together))
         network = springs = 0.0
         for block, first, last in blocks:
-            start = block * np.uint64(together)
-            inverse, weight = inverses[block], weights[block]
-            _deform(
-                nodes, points, u, cells, reference, inverse, start, first, last, local, drawn, f
-            )
+            start, weight = block * np.uint64(together), weights[block]
+            deform(u, mesh, block, first, last, local, drawn, f)
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
@@ -726,52 +563,14 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
                     w = weight[q, k]
                     network += w * law_energy(i1, jac, mu[e], constants[:, e])
-                    if pointwise is not None:
-                        network += 0.5 * w * pointwise[e] * (jac - 1.0) ** 2
-                if branches is not None:
-                    for b in range(len(beta)):
-                        for k in range(first, last):
-                            e = start + k
-                            s11, s22 = branches[b, block, 0, q, k], branches[b, block, 1, q, k]
-                            s12, s33 = branches[b, block, 2, q, k], branches[b, block, 3, q, k]
-                            square = _spring(
-                                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], s11, s22, s12, s33
-                            )
-                            springs += weight[q, k] * square / (4.0 * beta[b] * mu[e])
+                    network += 0.5 * w * pointwise[e] * (jac - 1.0) ** 2
+                for b in range(len(beta)):
+                    for k in range(first, last):
+                        square = _spring(_four(f, q, k), _four(branches[b, block], q, k))
+                        springs += weight[q, k] * square / (4.0 * beta[b] * mu[start + k])
         return network, springs
 
-    made = (assemble_tangent, internal_force, commit, energies)
+    every = (assemble_tangent, internal_force, commit, energies)
     return SimpleNamespace(
-        **{loop.__name__: _compiled(loop, law, nodes, points, modes) for loop in made}
+        **{loop.__name__: _compiled(loop, law, nodes, points, modes) for loop in every}
     )
-
-
-@cache
-def stress_loop(law: Law):
-    """The loop that gives a law's stress at points with gradients of their own."""
-    law_stress = law.stress
-    register_jitable(inline="always")(law_stress)
-
-    def isochoric_stress(u, cells, grad, mu, constants, only, out):
-        """Isochoric second Piola-Kirchhoff stress 11, 22, 12, 33 into ``out`` (np, 4) where only
-        (np,) says so.
-
-        Shapes: u (n, 2); cells (np, nen); grad (np, nen, 2); mu (np,).
-        """
-        for e in range(len(cells)):
-            if not only[e]:
-                continue
-            f11 = f22 = 1.0
-            f12 = f21 = 0.0
-            for a in range(cells.shape[1]):
-                x, y = u[cells[e, a], 0], u[cells[e, a], 1]
-                f11 += x * grad[e, a, 0]
-                f12 += x * grad[e, a, 1]
-                f21 += y * grad[e, a, 0]
-                f22 += y * grad[e, a, 1]
-            c11, c22, c12 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22
-            i1, jac = c11 + c22 + 1.0, f11 * f22 - f12 * f21
-            mod, t = law_stress(i1, jac, mu[e], constants[e])
-            out[e, 0], out[e, 1], out[e, 2], out[e, 3] = _isochoric(mod, t, i1, c11, c22, c12, jac)
-
-    return _compiled(isochoric_stress, law)

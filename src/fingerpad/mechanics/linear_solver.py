@@ -165,9 +165,8 @@ class PardisoCondensation:
         :meth:`backward`.
         """
         self._reduced = np.zeros(self._pattern.size, self._real)
-        self._call(
-            331 if len(self.condensed) else 33, np.array(right, dtype=self._real), self._reduced
-        )
+        phase = 331 if len(self.condensed) else 33
+        self._call(phase, np.array(right, dtype=self._real), self._reduced)
         return self._reduced[self.condensed].astype(float)
 
     def backward(self, condensed_values: np.ndarray) -> np.ndarray:

@@ -6,11 +6,9 @@ v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta times the deviatoric stre
 """
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from fingerpad.laws import Assigned
-from fingerpad.mechanics import kernels
-from fingerpad.mechanics.finite_strain import everywhere_neo_hooke
+from fingerpad.mechanics.finite_strain import FiniteStrainBody, everywhere_neo_hooke
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import step_coefficients
 from fingerpad.specimen.materials import Prony
@@ -25,11 +23,6 @@ class SmallStrainBody:
     smallest_jacobian = 1.0
     pressed = 0.0  # a state is of its displacement alone
 
-    @property
-    def factor(self) -> float:
-        """Share of the long-term deviatoric stress that answers at once in the step begun last."""
-        return self._factor
-
     def __init__(
         self,
         space: Space,
@@ -38,73 +31,43 @@ class SmallStrainBody:
         prony: Prony | None = None,
         laws: tuple[Assigned, ...] | None = None,
     ):
-        self.space, self.shear, self.bulk, self.prony = (
-            space,
-            np.asarray(shear, float),
-            np.asarray(bulk, float),
-            prony,
-        )
+        self.space, self.prony = space, prony
+        self.shear, self.bulk = np.asarray(shear, float), np.asarray(bulk, float)
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self.u = np.zeros(space.points.shape)
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
         self._last = self.u.copy()
-        self.branch_work = 0.0
-        parts = self._stiffness(1.0, 0.0), self._stiffness(0.0, 1.0)
-        self._deviatoric, self._volumetric = map(self._everything, parts)
-        scatter, most = space.pattern.scatter.ravel(), space.pattern.nonzeros + 1
-        self._free = [np.bincount(scatter, part.ravel(), most) for part in parts]
+        self.factor, self.branch_work = 1.0, 0.0
+        unsupported = np.zeros_like(space.fixed)
+        everywhere = Space(
+            space.points, space.cells, space.element.kind, unsupported, space.element.name
+        )
+        self._free, self._rates = self._tangents(space)
+        self._deviatoric, self._volumetric = map(
+            everywhere.pattern.matrix, self._tangents(everywhere)[0]
+        )
         self._factored: tuple | None = None
-        self._begin(1.0, np.zeros_like(self.u))
+        self._history = np.zeros_like(self.u)
 
-    def _stiffness(self, deviatoric, volumetric):
-        """(ne, nd(nd+1)/2): the upper triangle of every element's matrix."""
-        space, zero = self.space, np.zeros_like(self.u)
-        out = np.zeros(space.pattern.scatter.size)
-        each = np.arange(out.size, dtype=np.int32).reshape(space.pattern.scatter.shape)
-        no_lag, volume = np.zeros((2, len(space.cells), space.psi.shape[2]))
-        for part in self.laws:
-            constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
-            kernels.loops(part.law, *space.sizes).assemble_tangent(
-                zero,
-                space.mesh,
-                deviatoric * self.shear,
-                volumetric * self.bulk,
-                constants,
-                blocks,
-                no_lag,
-                volume,
-                None,
-                1.0,
-                None,
-                each,
-                out,
-                zero.copy(),
-            )
-        return out.reshape(each.shape)
-
-    def _everything(self, upper):
-        """The matrix (2 n, 2 n) of all degrees of freedom, also of those that are prescribed."""
-        dofs = np.concatenate([2 * self.space.cells, 2 * self.space.cells + 1], axis=1)
-        rows, columns = np.triu_indices(dofs.shape[1])
-        above = rows < columns
-        values = np.concatenate([upper.ravel(), upper[:, above].ravel()])
-        i = np.concatenate([dofs[:, rows].ravel(), dofs[:, columns[above]].ravel()])
-        j = np.concatenate([dofs[:, columns].ravel(), dofs[:, rows[above]].ravel()])
-        return csr_matrix((values, (i, j)), shape=(self.u.size, self.u.size))
-
-    def _begin(self, factor, history):
-        self._factor, self._history = factor, history
+    def _tangents(self, space):
+        """Tangents of the finite body at rest, of the change of shape and of volume alone; and the
+        derivative of its volume.
+        """
+        bodies = [
+            FiniteStrainBody(space, shape * self.shear, volume * self.bulk, laws=self.laws)
+            for shape, volume in np.eye(2)
+        ]
+        return [body.tangent()[0] for body in bodies], bodies[0].rates
 
     def begin_step(self, dt: float) -> None:
         """Prepare a step of ``dt`` seconds."""
         if self.prony:
-            self._decay, self._gamma, factor = step_coefficients(self.prony, dt)
+            self._decay, self._gamma, self.factor = step_coefficients(self.prony, dt)
             beta = self.prony.beta
-            branch = (
+            self._history = (
                 np.tensordot(beta * self._decay, self.v, axes=1)
                 - np.sum(beta * self._gamma) * self._last
             )
-            self._begin(factor, branch)
 
     def displace(self, u: np.ndarray, dilatation=None) -> np.ndarray:
         self.u = np.array(u)
@@ -112,20 +75,20 @@ class SmallStrainBody:
 
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
-        answering = (self._factor * self.u + self._history).ravel()
+        answering = (self.factor * self.u + self._history).ravel()
         return (self._deviatoric @ answering + self._volumetric @ self.u.ravel()).reshape(
             self.u.shape
         )
 
     def stiffness(self) -> np.ndarray:
         """Coefficients of the pattern (nonzeros + 1,) of the step begun last."""
-        return self._factor * self._free[0] + self._free[1]
+        return self.factor * self._free[0] + self._free[1]
 
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
         """Schur complement (nc, nc), factored anew only for a new step size or contact zone, and
         internal force (n, 2).
         """
-        key = (id(solver), self._factor)
+        key = (id(solver), self.factor)
         if self._factored is None or self._factored[0] != key:
             self._data = self.stiffness()
             self._factored = (key, solver.factor(self._data), solver)
@@ -156,11 +119,7 @@ class SmallStrainBody:
 
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of div u."""
-        space, out = self.space, np.empty((len(self.space.cells), self.space.psi.shape[2]))
-        kernels.dilatation_loop(*space.sizes)(
-            np.zeros_like(self.u), self.u, space.mesh, space.all_blocks, out
-        )
-        return out
+        return (self._rates @ self.u.ravel()).reshape(len(self.space.cells), -1)
 
     def save(self):
         """Everything needed to come back to this state."""

@@ -6,6 +6,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from fingerpad.mechanics.elements import EDGE_POINTS, EDGE_WEIGHTS, ELEMENTS, edge_values
 from fingerpad.mechanics.linear_solver import SymmetricPattern
@@ -66,11 +67,8 @@ class Space:
     """
 
     def __init__(self, points, cells, kind, fixed, element=None):
-        points, cells, fixed = (
-            np.asarray(points, float),
-            np.asarray(cells, np.int32),
-            np.asarray(fixed, bool),
-        )
+        points, cells = np.asarray(points, float), np.asarray(cells, np.int32)
+        fixed = np.asarray(fixed, bool)
         self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
         if kind == "tri6" and self.element.nodes_per_element == 7:
             centroid = -points[cells[:, :3]].sum(1) / 9 + 4 / 9 * points[cells[:, 3:]].sum(1)
@@ -97,9 +95,7 @@ class Space:
         gram = (self.weight[..., None] * modes).swapaxes(1, 2) @ modes
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(modes @ self._orthonormal.swapaxes(1, 2))
-        reference = np.concatenate(
-            [self.element.gradients[..., 0], self.element.gradients[..., 1]]
-        ).T
+        reference = np.concatenate(np.moveaxis(self.element.gradients, -1, 0)).T
         parts = (self._inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
         self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
@@ -107,19 +103,15 @@ class Space:
         self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
         self.size = int(self.equation.max()) + 1
 
-    def _raw_modes(self, position):
-        """Pressure modes before orthonormalisation at points (ne, nq, 2): 1, x, y about the centre,
-        or one per point.
+    def _raw_modes(self, position, elements=slice(None)):
+        """Pressure modes before orthonormalisation at points (ne, nq, 2) of elements: 1, x, y about
+        the centre, or one per point.
         """
         count = self.element.pressure_modes
         if count not in (1, 3):
             return np.broadcast_to(np.eye(count), (len(position), count, count))
-        local = (position - self.centres[:, None]) / self._span[:, None, None]
+        local = (position - self.centres[elements, None]) / self._span[elements, None, None]
         return np.concatenate([np.ones((*local.shape[:2], 1)), local], axis=2)[:, :, :count]
-
-    @property
-    def nodes(self) -> int:
-        return len(self.points)
 
     @cached_property
     def grad(self) -> np.ndarray:
@@ -143,8 +135,7 @@ class Space:
             nearest = np.sum((places - points[:, None]) ** 2, axis=2).argmin(1)
             own = np.arange(count) == nearest[:, None]
             return np.where(own, self.psi[elements, nearest], 0.0)
-        local = (points - self.centres[elements]) / self._span[elements][:, None]
-        raw = np.column_stack([np.ones(len(points)), local])[:, :count]
+        raw = self._raw_modes(points[:, None], elements)[:, 0]
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
 
     def blocks(self, which: np.ndarray) -> np.ndarray:
@@ -167,6 +158,18 @@ class Space:
     def all_blocks(self) -> np.ndarray:
         """:meth:`blocks` of all elements."""
         return self.blocks(np.ones(len(self.cells), bool))
+
+    def volume_rates(self) -> csr_matrix:
+        """Room for the derivative of the elements' dilatation modes (ne nm) by all displacements (2
+        n): nm rows an element, in each all x before all y.
+        """
+        count, nodes, modes = len(self.cells), self.sizes[0], self.sizes[2]
+        columns = 2 * self.cells[:, None, None] + np.arange(2)[:, None]
+        columns = np.broadcast_to(columns, (count, modes, 2, nodes)).ravel()
+        starts = 2 * nodes * np.arange(count * modes + 1)
+        return csr_matrix(
+            (np.zeros(columns.size), columns, starts), shape=(count * modes, self.points.size)
+        )
 
     def to_equations(self, field: np.ndarray) -> np.ndarray:
         """Values of a nodal field (n, 2) at the free equations (size,)."""

@@ -251,10 +251,10 @@ class QuasiStatic:
             stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1])
         )
         (along, across), x = body.space.equation[skin.nodes[0]], self.points[:, 0]
-        mirrored = along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x)
+        mirrored = bool(along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x))
         stiffest = stiffest[skin.edges].min(axis=1)
         self.places = ContactPoints.on(
-            self.points, skin.nodes, skin.edges, stiffest, bool(mirrored), profile.convexity
+            self.points, skin.nodes, skin.edges, stiffest, mirrored, profile.convexity
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
@@ -269,7 +269,7 @@ class QuasiStatic:
         self.friction = None if friction is None else Coulomb(friction, places)
         self._factors = self._flexible = self._stiffness = None
         self._found: tuple[tuple, Rows] | None = None
-        self._nodal = self._touched = None
+        self._nodal = None
         self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
@@ -384,7 +384,7 @@ class QuasiStatic:
         points = self._position(self._range)
         single = self.profile.evaluate(points)
         if self._valleys is None:
-            rows = Rows(self.zone, self._range, None, *single)
+            rows = Rows(self.zone, self._range, np.full(len(self.zone), -1), *single)
         else:
             kept = [self.contact_force, self.active, *(self.friction.kept if self.friction else ())]
             rows = self._valleys.rows(self.zone, self._range, points, single, kept)
@@ -843,17 +843,13 @@ class QuasiStatic:
         return len(self._touches) < 2 or strides.judge(*self._touches, self._touch())
 
     def _touch(self):
-        rows = self._rows()
-        if self._touched is None or self._touched[0] is not rows:
-            force, _, length, edges = self._on_nodes()
-            x = (self.points + self.body.u)[self.skin.nodes, 0]
-            drag, press = self._forces()[0].sum(0)
-            stuck = self.contact_force[self.friction.state == STICK].sum() if self.friction else 0.0
-            share = float(stuck / max(self.contact_force.sum(), 1e-300))
-            drag = float(drag / press) if press else 0.0
-            touch = Touch(x, force / length, edges, self.distance, drag, share)
-            self._touched = rows, touch
-        return self._touched[1]
+        force, _, length, edges = self._on_nodes()
+        x = (self.points + self.body.u)[self.skin.nodes, 0]
+        drag, press = self._forces()[0].sum(0)
+        stuck = self.contact_force[self.friction.state == STICK].sum() if self.friction else 0.0
+        share = float(stuck / max(self.contact_force.sum(), 1e-300))
+        drag = float(drag / press) if press else 0.0
+        return Touch(x, force / length, edges, self.distance, drag, share)
 
     def _give_up_if_vain(self, failure, size, halvings, records):
         """NonConvergence where smaller parts of a step are of no use."""

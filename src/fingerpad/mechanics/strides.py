@@ -73,10 +73,10 @@ class Touch:
         found = []
         for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
             for last, inside, beyond in (
-                (run[0], run[:2][-1], run[0] - 1),
-                (run[-1], run[-2:][0], run[-1] + 1),
+                (run[0], run[:2][-1], max(run[0] - 1, 0)),
+                (run[-1], run[-2:][0], min(run[-1] + 1, len(x) - 1)),
             ):
-                room = x[min(max(beyond, 0), len(x) - 1)] - x[last]
+                room = x[beyond] - x[last]
                 fall = square[inside] - square[last]
                 way = square[last] / fall * (x[last] - x[inside]) if fall > 0 else room / 2
                 found.append(x[last] + (way if abs(way) < abs(room) else room))
@@ -105,12 +105,11 @@ class Passage:
     def at(cls, first: Touch, last: Touch, share: float, x: np.ndarray) -> Passage:
         """See the class."""
         window, anchors = _way(first, last)
-        if anchors is None or not np.all(np.diff(x[window]) > 0):
-            return cls(first, last, share, window, None)
-        now = (1 - share) * anchors[0] + share * anchors[1]
-        return cls(
-            first, last, share, window, np.stack([_along(x[window], now, each) for each in anchors])
-        )
+        origin = None
+        if anchors is not None and np.all(np.diff(x[window]) > 0):
+            now = (1 - share) * anchors[0] + share * anchors[1]
+            origin = np.stack([x[window] + np.interp(x[window], now, at - now) for at in anchors])
+        return cls(first, last, share, window, origin)
 
     def pressure(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(ns,) Pa, of pressures (ns,) in either state."""
@@ -130,19 +129,16 @@ class Passage:
         """
         if self.origin is None:
             return values
-        moved = [np.zeros(len(each)) for each in values]
-        for out, each, touch, at in zip(
-            moved, values, (self.first, self.last), self.origin, strict=True
-        ):
+        moved = np.zeros((2, len(values[0])))
+        ends = zip(moved, values, (self.first, self.last), self.origin, strict=True)
+        for out, each, touch, at in ends:
             x, known = touch.x[self.window], each[self.window]
             if falls:
                 edges = np.sort(touch.patches.ravel())
                 beyond = np.searchsorted(x, edges).clip(1, len(x) - 1)
                 between = (known[beyond] > 0) != (known[beyond - 1] > 0)
-                x, known = (
-                    np.insert(x, beyond[between], edges[between]),
-                    np.insert(known, beyond[between], 0.0),
-                )
+                x = np.insert(x, beyond[between], edges[between])
+                known = np.insert(known, beyond[between], 0.0)
             out[self.window] = np.interp(at, x, known)
         return moved
 
@@ -167,9 +163,8 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
     A piece of the contact that has come or gone has no edges in the other state, and fades where it
     is.
     """
-    along = (
-        first.distance - last.distance
-    )  # the surface goes as the pad comes along it the other way
+    # the surface goes as the pad comes along it the other way
+    along = first.distance - last.distance
     pieces, pieces_then = first.patches, last.patches
     lefts, rights = (_same(pieces[:, side], pieces_then[:, side], along) for side in (0, 1))
     found = [(pieces[i, 0], pieces_then[j, 0]) for i, j in lefts.items()]
@@ -193,20 +188,10 @@ def _same(edges: np.ndarray, then: np.ndarray, along: float) -> dict[int, int]:
     """
     if not len(edges) or not len(then):
         return {}
-    apart, far = (
-        np.abs(then - edges[:, None] - along / 2),
-        _NOT_FAR * abs(along) if along else np.inf,
-    )
+    apart = np.abs(then - edges[:, None] - along / 2)
+    far = _NOT_FAR * abs(along) if along else np.inf
     nearest, back = apart.argmin(axis=1), apart.argmin(axis=0)
     return {i: int(j) for i, j in enumerate(nearest) if back[j] == i and apart[i, j] <= far}
-
-
-def _along(x: np.ndarray, now: np.ndarray, then: np.ndarray) -> np.ndarray:
-    """Places (n,) m that what is at ``x`` (n,) m came from or goes to, between anchors (k,) m now
-    and then.
-    """
-    shift = np.interp(x, now, then - now)
-    return x + shift
 
 
 def missed(before: Touch, middle: Touch, found: Touch) -> float:
@@ -269,9 +254,8 @@ class Strides:
         if self._between is None:
             return True
         off = missed(before, middle, found) / self._between.tolerance
-        turning = any(
-            _FEW < touch.sticks < 1 - _FEW for touch in (middle, found)
-        )  # from stick to slip, or back
+        # from stick to slip, or back
+        turning = any(_FEW < touch.sticks < 1 - _FEW for touch in (middle, found))
         if (off > _TOO_FAR or turning) and self._taken > 1:
             return False
         if turning:

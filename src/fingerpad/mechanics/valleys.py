@@ -61,7 +61,7 @@ class Valleys:
         which, corner, distance, normal, bend = (values[free] for values in walls)
         self._move(part, which, corner, distance, kept)
         if not len(which):
-            return Rows(zone, part, None, *single)
+            return Rows(zone, part, np.full(len(zone), -1), *single)
         gap, gradient, curvature = (values.copy() for values in single)
         gap[which], gradient[which], curvature[which] = distance[:, 0], normal[:, 0], bend[:, 0]
         count, first = len(gap), np.arange(part.start, part.stop)
