@@ -317,7 +317,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         # their dilatation modes; and how stresses answer to all degrees of freedom, the second time
         # only to those along y
         left = np.empty((2, nodes, 2 * points + modes))
-        left[:, :, : 2 * points] = reference
+        for a in range(nodes):  # by loops: numba takes seconds to compile a broadcast
+            for q in range(2 * points):
+                left[0, a, q] = left[1, a, q] = reference[a, q]
         right_x, right_y = (
             np.zeros((2 * points + modes, wide_x)),
             np.zeros((2 * points + modes, wide_y)),
