@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from test_hard_cases import fails_cleanly
 from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
 from cysyk1999.studies.stability.cases import CATALOGUE, COMBINED, PICKED, Limits
@@ -24,7 +25,6 @@ from cysyk1999.studies.stability.run import (
     run,
 )
 from fingerpad import simulation
-from fingerpad.cli import main
 from fingerpad.mechanics import stepping
 from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, read_history
@@ -159,25 +159,11 @@ def test_what_is_beyond_the_method_leaves_the_last_state_and_a_cause(name, tmp_p
     """As a user runs it: exit 3, one line with cause and advice, the last sound state; or a result
     that admits its error.
     """
-    (tmp_path / "case.yaml").write_text(yaml.safe_dump(CATALOGUE[name].document))
-    code = main(["run", str(tmp_path / "case.yaml"), "--out", str(tmp_path / "out"), "--quiet"])
-    if code == 0:
+    saved = fails_cleanly(yaml.safe_dump(CATALOGUE[name].document), tmp_path, capsys)
+    if saved is None:
         assert read_history(tmp_path / "out" / "history.nc").attrs["estimated_error"] >= 0.5
         return
-    said = capsys.readouterr().err
-    assert code == 3 and said.count("\n") == 1
-    assert "no convergence after t =" in said and "try" in said and "last_converged.nc" in said
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
-        "last_converged.nc",
-        "plan.json",
-    ]
-    saved = read_history(tmp_path / "out" / "last_converged.nc")
-    assert (
-        not saved.attrs["complete"]
-        and saved.sizes["time"] > 1
-        and np.isfinite(saved.to_array().values).all()
-    )
-    assert float(saved.complementarity_error.max()) < 1e-3 and float(saved.min_detF.min()) > 0
+    assert saved.sizes["time"] > 1 and float(saved.min_detF.min()) > 0
     assert float(saved.energy_balance_error[-1]) < 0.05
 
 
