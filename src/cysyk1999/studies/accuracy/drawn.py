@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -23,13 +22,12 @@ from cysyk1999.studies.accuracy.compare import FINEST, QUANTITIES, belief, resiz
 from cysyk1999.studies.accuracy.own import finer_own, unseen, write_own
 from cysyk1999.studies.accuracy.ridges import TRUTH
 from cysyk1999.studies.common.documents import FLAT, cylinder, force, scene_of
-from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.meshes import pad_of
 from cysyk1999.studies.common.plans import OutOfTime, finer, time_limit
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
 from fingerpad.simulation import simulate
-from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.files import write_pad
 from fingerpad.specimen.pad import all_over
 from fingerpad.specimen.ridges import wave_of
@@ -231,11 +229,9 @@ def _of_any(name: str, document: dict[str, Any], folder: Path) -> Runs:
     if sampled:
         scene = asked = scene.varied({"stimulus": stimulus})
     if made:
-        edge, size = made["edge"], plan(scene.with_accuracy("thesis")).mesh_size
-        size = replace(size, skin_edge=edge, layer_edge=0.9 * edge)
-        mesh = build_pad_mesh(scene.specimen.outline, size)
-        path = folder / f"{name}.msh"
-        write_pad(mesh if made["element"] == "quad9" else split(mesh, made["element"]), path)
+        edge, path = made["edge"], folder / f"{name}.msh"
+        mesh = pad_of(scene, made["element"], skin_edge=edge, layer_edge=0.9 * edge)
+        write_pad(mesh, path)
         asked = scene_of(document | {"specimen": {"mesh": str(path)}}, name)
     run = simulate(asked)
     if made:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,12 +23,10 @@ from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.studies.accuracy.belief import finest
 from cysyk1999.studies.accuracy.compare import difference, looked_at
 from cysyk1999.studies.common.documents import FLAT, cylinder, force
-from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.meshes import pad_of
 from fingerpad import load_scene
-from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
-from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.files import write_pad
 
@@ -81,16 +78,9 @@ def measured(base: Scene, folder: Path) -> pd.DataFrame:
 
 def _on_split(scene: Scene, edge: float, kind: str, folder: Path) -> xr.Dataset:
     """History of a press on the pad's mesh split into elements of a kind, as a user's own mesh."""
-    size = replace(
-        plan(scene.with_accuracy("thesis")).mesh_size,
-        skin_edge=edge,
-        layer_edge=0.9 * edge,
-        focus=(),
-        skin_radial_edge=None,
-    )
-    mesh = build_pad_mesh(scene.specimen.outline, size)
     path = folder / f"{kind}.msh"
-    write_pad(mesh if kind == "quad9" else split(mesh, kind), path)
+    edges = {"skin_edge": edge, "layer_edge": 0.9 * edge, "focus": (), "skin_radial_edge": None}
+    write_pad(pad_of(scene, kind, **edges), path)
     accuracy = {"element": SOLVED[kind], "tolerance": 0.5, "once": True}
     own = {"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy}
     return simulate(scene.varied(own))
