@@ -40,7 +40,7 @@ FAST = [name for name in COMBINED if int(name.partition(":")[0]) in QUICK]
 @cache
 def done(name):
     """A case by the default method, once for all tests."""
-    return run(CATALOGUE[name], compare=False)
+    return run(CATALOGUE[name])
 
 
 def end(name, leg=-1):
@@ -186,14 +186,14 @@ def test_what_the_method_buys(name, method, measure):
     """Mutants: without pressure modes pressure oscillates, without the lagged pressure Newton's
     method needs more.
     """
-    found = run(CATALOGUE[name], method, compare=False)
+    found = run(CATALOGUE[name], method)
     assert found.outcome != STABLE
     assert not found.completed or measure in found.message
 
 
 def test_full_quads_lock():
     """Mutant: they complete, with nothing to see in their own measures, at half the depth."""
-    locked = run(CATALOGUE["nu 0.4999, flat"], "full Q1", compare=False)
+    locked = run(CATALOGUE["nu 0.4999, flat"], "full Q1")
     assert locked.completed
     assert (
         float(locked.history.indentation_depth[-1] / end("nu 0.4999, flat").indentation_depth) < 0.7
@@ -260,7 +260,7 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
     """A press in one step knows its work too roughly to note anything of it."""
 
     def notes(name):
-        return run(CATALOGUE[name], compare=False).history.attrs["notes"]
+        return run(CATALOGUE[name]).history.attrs["notes"]
 
     assert "energy" not in notes("nu 0.48, flat") and "volume" not in notes("nu 0.48, flat")
     with pytest.MonkeyPatch.context() as mutant:
@@ -282,7 +282,7 @@ def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatc
     """
 
     def noted(name):
-        return "from node to node" in run(CATALOGUE[name], compare=False).history.attrs["notes"]
+        return "from node to node" in run(CATALOGUE[name]).history.attrs["notes"]
 
     (graded,) = (name for name in CATALOGUE if name.startswith("54:"))
     assert noted(graded) and not noted("nu 0.48, flat")
@@ -296,14 +296,14 @@ def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
     """
     starve(monkeypatch, max_iterations=3)
     names = "bar, fillet 0.03 mm, 2 mm", "sharp bar, 2 mm"
-    notes = [run(CATALOGUE[name], compare=False).history.attrs["notes"] for name in names]
+    notes = [run(CATALOGUE[name]).history.attrs["notes"] for name in names]
     assert ["states near to one another" in each for each in notes] == [True, False]
 
 
 def test_a_step_is_not_tried_for_ever(monkeypatch):
     case = CATALOGUE["needle through the pad"]
     monkeypatch.setattr(stepping, "MOST_ITERATIONS", 30)
-    found = run(case, compare=False)
+    found = run(case)
     assert (
         found.outcome == CLEAN
         and "Newton iterations did not suffice for a step cut" in found.message
@@ -316,10 +316,10 @@ def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):
     """
     starve(monkeypatch, max_iterations=2)
     monkeypatch.setattr(stepping, "MAX_HALVINGS", 0)
-    found = run(CATALOGUE["nu 0.49999, flat"], compare=False)
+    found = run(CATALOGUE["nu 0.49999, flat"])
     assert not found.completed and found.outcome == CLEAN and "try" in found.message
     monkeypatch.setattr(stepping.QuasiStatic, "_advice", lambda self, reason: "")
-    assert run(CATALOGUE["nu 0.49999, flat"], compare=False).outcome not in (STABLE, CLEAN, SILENT)
+    assert run(CATALOGUE["nu 0.49999, flat"]).outcome not in (STABLE, CLEAN, SILENT)
 
 
 def test_checkerboard_sees_what_alternates_and_nodes_that_lift_off():
