@@ -227,8 +227,8 @@ def test_historical_models_are_fitted_to_the_plate(scenes):
     """Their modulus and tension give the plate its width; sharper surfaces sink deeper into
     both.
     """
-    for model, fit in found.MODELS.values():
-        constant = fit(scenes["flat"], 4.8e-3)
+    for name, (model, _) in found.MODELS.items():
+        constant = found.fitted(name, scenes["flat"], 4.8e-3)
         flat, sharp = (model(scenes[family], constant) for family in ("flat", "1260"))
         assert flat["width"] == pytest.approx(4.8e-3, rel=1e-5)
         assert sharp["depth"] > flat["depth"] and sharp["width"] < flat["width"]

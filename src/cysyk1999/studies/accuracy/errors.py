@@ -193,17 +193,6 @@ def _force(scene: Scene) -> float:
     return scene.motion[0].press_to_force / scene.specimen.contact_length
 
 
-def half_plane_modulus(scene: Scene, width: float) -> float:
-    """Young's modulus (Pa) with which a half-plane has the contact ``width`` (m) under the plate at
-    the end of the hold.
-    """
-    radius, poisson = (
-        scene.specimen.outline.apex_radius,
-        scene.specimen.layers.dermis.poisson_ratio,
-    )
-    return 4 * _force(scene) * radius / (np.pi * (width / 2) ** 2) * (1 - poisson**2)
-
-
 def half_plane(scene: Scene, modulus: float) -> dict[str, float]:
     """What the elastic half-plane of ``modulus`` (Pa) answers at the end of the hold."""
     specimen = scene.specimen
@@ -224,15 +213,6 @@ def half_plane(scene: Scene, modulus: float) -> dict[str, float]:
     return found | {f"energy {1e6 * z:.0f} um": e for z, e in zip(DEPTHS, energies, strict=True)}
 
 
-def water_bed_tension(scene: Scene, width: float) -> float:
-    """Tension (N/m) with which a water bed has the contact ``width`` (m) under the plate at the end
-    of the hold.
-    """
-    bounds = np.log([0.3 * _force(scene), 100 * _force(scene)])
-    log = brentq(lambda log: water_bed(scene, np.exp(log))["width"] - width, *bounds, xtol=1e-6)
-    return float(np.exp(log))
-
-
 def water_bed(scene: Scene, tension: float) -> dict[str, float]:
     """What the water bed of ``tension`` (N/m) answers at the end of the hold."""
     outline = scene.specimen.outline
@@ -248,14 +228,23 @@ def _curvature(scene: Scene) -> float:
     return getattr(scene.stimulus, "curvature", 0.0)
 
 
-MODELS = {HALF_PLANE: (half_plane, half_plane_modulus), WATER_BED: (water_bed, water_bed_tension)}
-"""Name -> the model, and its constant from the width of the contact with the plate."""
+MODELS = {HALF_PLANE: (half_plane, (1e4, 1e6)), WATER_BED: (water_bed, (6.0, 2000.0))}
+"""Name -> the model, and bounds of its constant: Young's modulus (Pa), and tension (N/m)."""
+
+
+def fitted(name: str, scene: Scene, width: float) -> float:
+    """Constant with which a model has the contact ``width`` (m) under the plate at the end of the
+    hold.
+    """
+    model, bounds = MODELS[name]
+    log = brentq(lambda log: model(scene, np.exp(log))["width"] - width, *np.log(bounds))
+    return float(np.exp(log))
 
 
 def _historical(scenes, family, width: float, reference, default: float) -> list[dict[str, Any]]:
     rows, scene = [], scenes[family]
-    for name, (model, fit) in MODELS.items():
-        constant = fit(scenes["flat"], width)
+    for name, (model, _) in MODELS.items():
+        constant = fitted(name, scenes["flat"], width)
         found = {quantity: [value] for quantity, value in model(scene, constant).items()}
         cpu = min(timeit.repeat(lambda: model(scene, constant), number=1, repeat=5))  # noqa: B023
         row = {"scene": family, "model": name, "process time (s)": cpu}
