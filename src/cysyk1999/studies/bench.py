@@ -36,7 +36,10 @@ from fingerpad.sweeps.language import load_sweep
 from fingerpad.sweeps.records import read_records
 
 TABLES = SCENES.parents[1] / "figures" / "tables"
-Rows = Iterator[dict[str, Any]]
+Rows = Iterator[tuple]
+SPEED = ["what", "value", "unit", "how", "repeats", "wanted"]
+"""Columns of a row of speed; the last is the largest value that is wanted."""
+SWEEPS = ["what", "scenes", "quantity", "value", "unit"]
 
 
 def median(call: Callable, repeats: int, clock: Callable[[], float] = time.process_time) -> float:
@@ -47,19 +50,6 @@ def median(call: Callable, repeats: int, clock: Callable[[], float] = time.proce
 def ratio(one: Callable, other: Callable, repeats: int) -> float:
     """Process time of a call over that of another: median of pairs in turn."""
     return float(np.median([seconds(one) / seconds(other) for _ in range(repeats)]))
-
-
-def row(what: str, value: float, unit: str, how: str, repeats: int = 1, target: Any = "") -> dict:
-    """A row of the table of speed; ``target``: the largest value that is wanted."""
-    return {
-        "what": what,
-        "value": float(f"{value:.4g}"),
-        "unit": unit,
-        "target": f"<= {target}" if target else "",
-        "met": value <= target if target else "",
-        "repeats": repeats,
-        "how": how,
-    }
 
 
 def planned(name: str, **changes: Any) -> tuple[Scene, Plan]:
@@ -104,11 +94,11 @@ def newton_iteration(repeats: int = 15) -> Rows:
     size = f"{len(run.body.space.points)} nodes, {run.body.space.size} unknowns"
     size += f", {len(stepper.zone.nodes)} skin nodes in the contact zone"
     times = ratio(iteration, factor_and_solve, repeats)
-    yield row("Newton iteration / (factor + solve)", times, "1", size, repeats, 1.8)
+    yield "Newton iteration / (factor + solve)", times, "1", size, repeats, 1.8
     times = ratio(partial(stepper.solver.factor, data), factor, repeats)
-    yield row("factor with Schur complement / plain factor", times, "1", size, repeats, 1.25)
+    yield "factor with Schur complement / plain factor", times, "1", size, repeats, 1.25
     once = 1e3 * median(factor_and_solve, repeats)
-    yield row("factor + solve", once, "ms", size, repeats)
+    yield "factor + solve", once, "ms", size, repeats, None
 
 
 def presses(repeats: int = 3) -> Rows:
@@ -119,14 +109,14 @@ def presses(repeats: int = 3) -> Rows:
         how = f"{chosen.nodes} nodes (half pad), {steps} steps, "
         how += f"{iterations} Newton iterations, meshing included"
         took = median(partial(simulate, scene, chosen), repeats)
-        yield row(f"ramp and hold, {name}", took, "s", how, repeats, 3)
+        yield f"ramp and hold, {name}", took, "s", how, repeats, 3
     ridged, plain = planned("ridged_40_flat"), planned("ramp40_flat")
     times = ratio(partial(simulate, *ridged), partial(simulate, *plain), repeats)
     nodes = plain[1].nodes, ridged[1].nodes
     how = f"ramp and hold, flat: {nodes[0]} and {nodes[1]} nodes (half pad), "
     how += f"{times:.2f} times the process time"
     what = "inner ridges, cost a node over the plain pad's"
-    yield row(what, times * nodes[0] / nodes[1], "1", how, repeats, 3)
+    yield what, times * nodes[0] / nodes[1], "1", how, repeats, 3
     for label, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
         for nu in (0.48, 0.4999):
             layers = {name: {"poisson_ratio": nu} for name in ("epidermis", "dermis", "fat")}
@@ -134,7 +124,7 @@ def presses(repeats: int = 3) -> Rows:
             history = simulate(scene_of(document | {"specimen": {"layers": layers}}, label))
             _, iterations, cuts = counted(history)
             how = f"20 gram-weight, {label}, nu = {nu}, {cuts} cuts"
-            yield row("full load in one step", iterations, "iterations", how, target=6)
+            yield "full load in one step", iterations, "iterations", how, 1, 6
 
 
 def strokes() -> Rows:
@@ -153,9 +143,9 @@ def strokes() -> Rows:
     how += "80 mm each at 1 to 40 mm/s"
     own = f"; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh"
     over = float(np.median(ratios))
-    yield row("five full strokes", sum(times), "s", how, target=240)
-    yield row("a full stroke / (factor + solve)", over, "1", how + own, target=500)
-    yield row("iterations a step of a stroke", iterations / steps, "1", how, target=3)
+    yield "five full strokes", sum(times), "s", how, 1, 240
+    yield "a full stroke / (factor + solve)", over, "1", how + own, 1, 500
+    yield "iterations a step of a stroke", iterations / steps, "1", how, 1, 3
 
 
 def command(*words: str | Path) -> Callable[[], Any]:
@@ -170,7 +160,7 @@ def overhead(repeats: int = 5) -> Rows:
     code += "s.Simulation(scene, fingerpad.plan(scene), None)"
     took = median(command(sys.executable, "-c", code), repeats, time.perf_counter)
     how = "wall time of a process that imports, plans, meshes and builds the model of ramp40_flat"
-    yield row("process overhead per job", took, "s", how, repeats, 1.5)
+    yield "process overhead per job", took, "s", how, repeats, 1.5
 
 
 # -- sweeps ---
@@ -203,20 +193,20 @@ def of_command(kind: str, scenes: int, cores: int, repeats: int = 3) -> Rows:
     whole = f"{kind}, the command on {cores} core{'s' * (cores > 1)}"
     middle = float(np.median(walls))
     took = f"wall time, median of {repeats}" if repeats > 1 else "wall time"
-    yield cost(whole, scenes, took, middle, "s")
-    yield cost(whole, scenes, "scenes a second", scenes / middle, "1/s")
+    yield whole, scenes, took, middle, "s"
+    yield whole, scenes, "scenes a second", scenes / middle, "1/s"
     if repeats > 1:
         spread = np.ptp(walls) / middle
-        yield cost(whole, scenes, "spread of the walls over their median", spread, "1")
+        yield whole, scenes, "spread of the walls over their median", spread, "1"
     alone = np.mean([record["cpu_s"] for batch in batches for record in batch[1:]])
     a_scene = "process time a scene"
-    yield cost(kind, scenes, f"{a_scene}, all included", cpu / scenes / repeats, "s")
-    yield cost(kind, scenes, f"{a_scene}, simulation alone", alone, "s")
+    yield kind, scenes, f"{a_scene}, all included", cpu / scenes / repeats, "s"
+    yield kind, scenes, f"{a_scene}, simulation alone", alone, "s"
     memory = [np.array([record["memory_MB"] for record in batch]) for batch in batches]
-    yield cost(kind, scenes, "largest memory", max(map(np.max, memory)), "MB")
+    yield kind, scenes, "largest memory", max(map(np.max, memory)), "MB"
     start = min(100, len(memory[0]) // 2)
     growth = max(batch[start:].max() / batch[start] for batch in memory)
-    yield cost(kind, scenes, f"largest memory after scene {start} over memory then", growth, "1")
+    yield kind, scenes, f"largest memory after scene {start} over memory then", growth, "1"
 
 
 def of_laying_out(scenes: int) -> Rows:
@@ -226,9 +216,9 @@ def of_laying_out(scenes: int) -> Rows:
         layout = lay_out(read, Path(name), 2)
         cpu = time.process_time() - start
         files = sum(path.is_file() for path in Path(name).rglob("*"))
-    yield cost("laying out", scenes, "process time a scene", cpu / scenes, "s")
-    yield cost("laying out", scenes, "batches", len(layout.batches), "count")
-    yield cost("laying out", scenes, "files", files, "count")
+    yield "laying out", scenes, "process time a scene", cpu / scenes, "s"
+    yield "laying out", scenes, "batches", len(layout.batches), "count"
+    yield "laying out", scenes, "files", files, "count"
 
 
 COLLECT = """
@@ -263,14 +253,7 @@ def of_collecting(scenes: int, measures: int = 30) -> Rows:
     for quantity, value, unit in zip(
         ("process time", "largest memory", "dataset"), said, ("s", "MB", "MB"), strict=True
     ):
-        yield cost(what, scenes, quantity, float(value), unit)
-
-
-def cost(what: str, scenes: int, quantity: str, value: float, unit: str) -> dict[str, Any]:
-    """A row of the table of sweeps, shown."""
-    print(f"{what}, {scenes} scenes: {quantity} {value:.4g} {unit}", flush=True)
-    known = {"what": what, "scenes": scenes, "quantity": quantity}
-    return known | {"value": float(value), "unit": unit}
+        yield what, scenes, quantity, float(value), unit
 
 
 def sweeps(most: int = 1000) -> pd.DataFrame:
@@ -280,17 +263,23 @@ def sweeps(most: int = 1000) -> pd.DataFrame:
         each for measured in (of_collecting, of_laying_out) for n in sizes for each in measured(n)
     ]
     one, two = (list(of_command(PRESS, most, cores)) for cores in (1, 2))
-    gain = one[0]["value"] / two[0]["value"]
+    gain = one[0][3] / two[0][3]
     what = "scenes on two cores over scenes on one"
-    rows += [*one, *two, cost(f"{PRESS}, the command", most, what, gain, "1")]
+    rows += [*one, *two, (f"{PRESS}, the command", most, what, gain, "1")]
     rows += [*of_command(HELD, most // 10, 1, 1), *of_command(SMALL, most, 2, 1)]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=SWEEPS)
 
 
 def speed() -> pd.DataFrame:
     """What presses, strokes and their parts cost, and the machine."""
     with threadpool_limits(1):
-        table = pd.DataFrame([*newton_iteration(), *presses(), *strokes(), *overhead()])
+        rows = [*newton_iteration(), *presses(), *strokes(), *overhead()]
+    table = pd.DataFrame(rows, columns=SPEED)
+    value, wanted = table["value"], table.pop("wanted")
+    table["value"] = [float(f"{each:.4g}") for each in value]
+    table.insert(3, "target", [f"<= {most:g}" if most else "" for most in wanted.fillna(0)])
+    table.insert(4, "met", (value <= wanted).where(wanted.notna(), ""))
+    table.insert(5, "repeats", table.pop("repeats"))
     made_by = provenance()
     known = [made_by["processor"], f"{os.cpu_count()} cores, 1 thread, python {made_by['python']}"]
     known += [f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl")]
