@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -59,17 +60,22 @@ REACH = 8e-3
 """m, that sampled profiles reach to either side."""
 
 
-def sampled(points: Any = (), curvature: float = 0.0, waves: Any = (), **places: Any) -> Sampled:
-    """A profile at places x, y (m); or at so many points of a curve (1/m) with waves: of each its
-    length and height (m) and its phase.
+def sampled(
+    x: Sequence[float] = (),
+    y: Sequence[float] = (),
+    points: int = 0,
+    curvature: float = 0.0,
+    waves: Sequence[tuple[float, float, float]] = (),
+) -> Sampled:
+    """A profile at places (m); or at so many points of a curve (1/m) with waves: of each its length
+    and height (m) and its phase.
     """
-    x, y = (np.array(places.get(name, ())) for name in "xy")
     if points:
         x = np.linspace(-REACH, REACH, points)
         y = curvature * x**2 / 2
         for length, height, phase in waves:
             y = y + height * np.cos(2 * np.pi * x / length + phase)
-    return Sampled(csv=Path("drawn.csv"), x=tuple(x), y=tuple(y - y.min()))
+    return Sampled(csv=Path("drawn.csv"), x=tuple(x), y=tuple(np.array(y) - np.min(y)))
 
 
 def truth_of(scene: Scene, last: Plan) -> xr.Dataset:
@@ -111,12 +117,9 @@ def beliefs(name: str, document: dict[str, Any], folder: Path) -> list[dict[str,
     asked = {"scene": name, "class": document.pop("class")}
     run, truth, quantities = runs(name, dict(document), folder)
     rows = []
-    for accuracy, history, other in (
-        (str(document["accuracy"]), run, truth),
-        (FINEST, truth, None),
-    ):
-        count = len(json.loads(history.attrs["runs"]))
-        row = belief(history, other, quantities, runs=count)
+    for accuracy, *pair in ((str(document["accuracy"]), run, truth), (FINEST, truth, None)):
+        count = len(json.loads(pair[0].attrs["runs"]))
+        row = belief(*pair, quantities, runs=count)
         rows.append(asked | {"accuracy": accuracy} | row)
     return rows
 
