@@ -55,7 +55,7 @@ def test_shares_of_the_limits(frame):
     assert share["a", "default", "det_f"] == pytest.approx(0.2)
     assert share["a", "default", "completed"] == 0 and share["b", "default", "completed"] == np.inf
     assert share["a", "default", "cuts"] == 0 and share["a", "plain Newton", "cuts"] > 1
-    assert np.isnan(share["a", "default", ["checkerboard", "off"]]).all()
+    assert share["a", "default"][["checkerboard", "off"]].isna().all()
     assert share["a", "full Q1", "off"] == pytest.approx(10)
     assert share["a", "plain P2", "off"] == pytest.approx(0.2)
 
