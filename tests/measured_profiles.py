@@ -71,49 +71,54 @@ def spectrum(rng, count, spacing, slope, longest):
     return noise / noise.std()
 
 
-#: name of the shape, spacing mm, rms of the noise mm, slope of its spectrum, digits after the point
-#: of a millimetre
 INSTRUMENTS = [
-    ("cylinder 1.5", 0.005, 0.0005, 0, 6),
-    ("cylinder 2.5", 0.005, 0.0005, 0, 6),
-    ("cylinder 2.5", 0.024, 0.0005, 0, 6),
-    ("cylinder 2.5", 0.005, 0.0, 0, 3),
-    ("cylinder 2.5", 0.0048, 0.002, 0, 6),
-    ("cylinder 2.5", 0.005, 0.001, 1, 4),
-    ("cylinder 2.5", 0.005, 0.001, 2, 5),
-    ("cylinder 5", 0.001, 0.0005, 0, 6),
-    ("cylinder 5", 0.002, 0.0, 0, 3),
-    ("cylinder 5", 0.01, 0.001, 1, 6),
-    ("cylinder 20", 0.005, 0.0005, 0, 4),
-    ("cylinder 20", 0.005, 0.0005, 2, 4),
-    ("plate", 0.005, 0.0005, 0, 6),
-    ("plate", 0.001, 0.0005, 1, 5),
-    ("plate", 0.01, 0.001, 2, 3),
-    ("coin's edge", 0.005, 0.0005, 0, 6),
-    ("coin's edge", 0.004, 0.0, 0, 3),
-    ("coin's edge", 0.01, 0.001, 1, 6),
-    ("bar", 0.005, 0.0005, 0, 6),
-    ("bar", 0.02, 0.0005, 2, 4),
-    ("tilted bar", 0.005, 0.0005, 0, 6),
-    ("dot", 0.005, 0.0005, 0, 6),
-    ("dot", 0.005, 0.0, 0, 3),
-    ("dot", 0.002, 0.001, 1, 4),
-    ("two dots", 0.005, 0.0005, 0, 6),
-    ("two dots", 0.01, 0.001, 2, 5),
-    ("texture", 0.005, 0.0005, 0, 6),
-    ("texture", 0.005, 0.0, 0, 3),
-    ("textured cylinder", 0.005, 0.0005, 0, 6),
-    ("textured cylinder", 0.01, 0.001, 1, 5),
+    line.split(", ")
+    for line in """
+cylinder 1.5, 0.005, 0.0005, 0, 6
+cylinder 2.5, 0.005, 0.0005, 0, 6
+cylinder 2.5, 0.024, 0.0005, 0, 6
+cylinder 2.5, 0.005, 0, 0, 3
+cylinder 2.5, 0.0048, 0.002, 0, 6
+cylinder 2.5, 0.005, 0.001, 1, 4
+cylinder 2.5, 0.005, 0.001, 2, 5
+cylinder 5, 0.001, 0.0005, 0, 6
+cylinder 5, 0.002, 0, 0, 3
+cylinder 5, 0.01, 0.001, 1, 6
+cylinder 20, 0.005, 0.0005, 0, 4
+cylinder 20, 0.005, 0.0005, 2, 4
+plate, 0.005, 0.0005, 0, 6
+plate, 0.001, 0.0005, 1, 5
+plate, 0.01, 0.001, 2, 3
+coin's edge, 0.005, 0.0005, 0, 6
+coin's edge, 0.004, 0, 0, 3
+coin's edge, 0.01, 0.001, 1, 6
+bar, 0.005, 0.0005, 0, 6
+bar, 0.02, 0.0005, 2, 4
+tilted bar, 0.005, 0.0005, 0, 6
+dot, 0.005, 0.0005, 0, 6
+dot, 0.005, 0, 0, 3
+dot, 0.002, 0.001, 1, 4
+two dots, 0.005, 0.0005, 0, 6
+two dots, 0.01, 0.001, 2, 5
+texture, 0.005, 0.0005, 0, 6
+texture, 0.005, 0, 0, 3
+textured cylinder, 0.005, 0.0005, 0, 6
+textured cylinder, 0.01, 0.001, 1, 5
+""".strip().splitlines()
 ]
+"""Shape, spacing mm, rms of the noise mm, slope of its spectrum, digits after the point of a
+millimetre.
+"""
 
 
 def measured(number):
     """x, y (n,) m as an instrument reports them, and y as it is, of one of the thirty."""
-    name, spacing, noise, slope, digits = INSTRUMENTS[number]
+    name, *numbers = INSTRUMENTS[number]
+    spacing, noise, slope, digits = map(float, numbers)
     shape, half = SHAPES[name]
     count = 2 * round(half / spacing) + 1
     x = np.linspace(-half, half, count)
     rng = np.random.default_rng(number)
     y = shape(x) + (noise * spectrum(rng, count, spacing, slope, 0.2) if noise else 0.0)
     # ends of steps are sampled too coarsely to differ after rounding
-    return 1e-3 * np.round(x, 6), 1e-3 * np.round(y, digits), 1e-3 * shape(x)
+    return 1e-3 * np.round(x, 6), 1e-3 * np.round(y, int(digits)), 1e-3 * shape(x)

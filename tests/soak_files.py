@@ -121,24 +121,28 @@ def _bytes(content, draw):
     return content[:at] + junk + content[at + int(draw.integers(2)) :]
 
 
+def _replaced(content, draw, pattern, new):
+    """One of what a pattern finds is another, made by ``new`` of what it was."""
+    found = list(re.finditer(pattern, content))
+    if not found:
+        return content
+    chosen = found[int(draw.integers(len(found)))]
+    return content[: chosen.start()] + new(chosen[0]).encode() + content[chosen.end() :]
+
+
 def _number(content, draw):
     """A number is another one, or none."""
-    numbers = list(re.finditer(rb"-?\d+\.?\d*(?:e-?\d+)?", content))
-    if not numbers:
-        return content
-    chosen = numbers[int(draw.integers(len(numbers)))]
-    scaled = float(chosen[0]) * draw.choice([-1, 0, 0.999, 1.01, 1e3, 1e-3]) + draw.normal()
-    new = (draw.choice(CELLS), str(draw.integers(-3, 2000)), f"{scaled:.6g}")[draw.integers(3)]
-    return content[: chosen.start()] + new.encode() + content[chosen.end() :]
+
+    def new(number):
+        scaled = float(number) * draw.choice([-1, 0, 0.999, 1.01, 1e3, 1e-3]) + draw.normal()
+        return (draw.choice(CELLS), str(draw.integers(-3, 2000)), f"{scaled:.6g}")[draw.integers(3)]
+
+    return _replaced(content, draw, rb"-?\d+\.?\d*(?:e-?\d+)?", new)
 
 
 def _word(content, draw):
     """A word is another one."""
-    words = list(re.finditer(rb"[A-Za-z_]+", content))
-    if not words:
-        return content
-    chosen = words[int(draw.integers(len(words)))]
-    return content[: chosen.start()] + draw.choice(WORDS).encode() + content[chosen.end() :]
+    return _replaced(content, draw, rb"[A-Za-z_]+", lambda word: draw.choice(WORDS))
 
 
 def _recoded(content, draw):
@@ -167,10 +171,8 @@ def moved(content: bytes, draw: np.random.Generator) -> bytes:
         coordinates = parts[-3:] if len(parts) in (3, 4) and any(b"." in p for p in parts) else None
         if coordinates and draw.random() < share:
             with contextlib.suppress(ValueError):  # damaged before
-                new = [
-                    f"{float(p) + draw.normal() * far:.6g}".encode() for p in coordinates[:2]
-                ] + [coordinates[2]]
-                lines[k] = b" ".join([*parts[:-3], *new])
+                x, y = (f"{float(p) + draw.normal() * far:.6g}".encode() for p in coordinates[:2])
+                lines[k] = b" ".join([*parts[:-3], x, y, coordinates[2]])
     return content[:start] + b"\n".join(lines) + content[end:]
 
 

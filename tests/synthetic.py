@@ -1,14 +1,16 @@
 """Made-up histories with the shapes of real ones: for testing figures and tables only, never a
-result.
+result. ``synthetic.yaml`` says what they are of.
 """
 
 from __future__ import annotations
 
 import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
+import yaml
 
 from cysyk1999.measures.errors import Companion
 from fingerpad.results import FRICTION_VARIABLES, VARIABLES, add_snapshots, history_of, skin_arc
@@ -17,30 +19,25 @@ from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.shapes import shape_from
 
-SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
-CURVATURE = dict(
-    zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True)
+DATA = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8"))
+OUTLINE, RIDGES, STROKES, PRESSED = (
+    DATA[key] for key in ("outline", "ridges", "strokes", "pressed")
 )
-OUTLINE = {
-    "apex_height": 6e-3,
-    "apex_radius": 7.9e-3,
-    "half_width": 8.5e-3,
-    "depth_below": 6.2e-3,
-    "epidermis_thickness": 0.85e-3,
-    "dermis_thickness": 0.85e-3,
-    "stratum_corneum_thickness": 0.35e-3,
-    "bone_centre_height": -1.5e-3,
-    "bone_half_width": 4e-3,
-    "bone_half_height": 2.5e-3,
-    "nail_half_width": 5e-3,
-}
+CURVATURE, KNOWN = DATA["surfaces"], {k: np.array(v) for k, v in DATA["known"].items()}
+SURFACES = tuple(CURVATURE)
+LABELS = {k: k if k == "flat" else f"k{k}" for k in SURFACES}
+"""Surface -> the end of a scene's name."""
+MM, INCH, GF = 1e-3, 25.4e-3, 9.80665e-3
 DEPTHS = np.array([560, 600, 640, 765, 800, 845, 870, 915, 960]) * 1e-6
 LOAD = 19.6133  # N/m
-KNOWN = (0, 79, 210, 420, 1260)  # 1/m, surfaces with measured values (below: end of hold)
-DEPTH = (0.54e-3, 0.63e-3, 0.71e-3, 0.76e-3, 0.83e-3)
-WIDTH = (4.74e-3, 3.17e-3, 2.08e-3, 1.37e-3, 0.69e-3)
-ENERGY_600 = (186, 384, 758, 1278, 2227)
-ENERGY_915 = (108, 197, 319, 426, 536)
+RIDGED = [f"ridged_40_{label}" for label in LABELS.values()]
+"""Ramps and holds on a pad with ridges."""
+PLATES = {
+    f"{pad}_stroke_{way}": (pad, sign)
+    for pad in ("plate", "ridged", "ridged_outer")
+    for way, sign in (("right", 1), ("left", -1))
+}
+"""Strokes of a plate: the pad, and 1 to the right."""
 
 
 @cache
@@ -58,14 +55,8 @@ def meshes(names) -> dict[str, PadMesh]:
 
 def all_scenes() -> list[str]:
     """Names of the scenes of ramps and holds."""
-    names = [
-        f"{p}_{'flat' if k == 'flat' else 'k' + k}" for p in ("ramp40", "ramp150") for k in SURFACES
-    ]
-    lower = [
-        f"press{f}_{'flat' if k == 'flat' else 'k' + k}"
-        for f in (10, 15)
-        for k in ("flat", "79", "158", "315", "630")
-    ]
+    names = [f"{programme}_{k}" for programme in ("ramp40", "ramp150") for k in LABELS.values()]
+    lower = [f"press{f}_{LABELS[k]}" for f in (10, 15) for k in ("flat", "79", "158", "315", "630")]
     return [*names, *lower, "homogeneous_flat"]
 
 
@@ -73,12 +64,12 @@ def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     """Every scene's made-up history; `scale` multiplies every result (a stand-in for a
     companion).
     """
-    made = {name: history(name, scale, edge) for name in all_scenes()}
-    made |= {name: pressed(name, scale, edge) for name in PRESSED}
-    made |= {name: ridged(name, scale, edge) for name in RIDGED} | {
-        name: plate_stroke(name, scale, edge) for name in PLATES
+    kinds = (history, all_scenes()), (pressed, PRESSED), (ridged, RIDGED), (plate_stroke, PLATES)
+    return {
+        name: make(name, scale, edge)
+        for make, names in (*kinds, (stroke, STROKES))
+        for name in names
     }
-    return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
 def companions(mesh: float = 1.01, both: float = 1.0125) -> dict[str, Companion]:
@@ -101,12 +92,9 @@ def _of(variables: dict[str, np.ndarray]) -> dict:
 def _filled(data: xr.Dataset) -> xr.Dataset:
     """The history with every variable that simulated ones have: what is not made up is zero."""
     rubbed = bool(json.loads(data.attrs["scene"])["friction"])
-    missing = [
-        name
-        for name in VARIABLES
-        if name not in data and (rubbed or name not in FRICTION_VARIABLES)
-    ]
-    sizes = {name: [data.sizes[dim] for dim in VARIABLES[name][0]] for name in missing}
+    wanted = [name for name in VARIABLES if rubbed or name not in FRICTION_VARIABLES]
+    sizes = {name: [data.sizes[dim] for dim in VARIABLES[name][0]] for name in wanted}
+    missing = [name for name in wanted if name not in data]
     return data.assign(
         _of({name: np.full(sizes[name], float(name == "min_detF")) for name in missing})
     )
@@ -120,12 +108,10 @@ def _made(
     """
     x, y = skin
     places = {"skin_x": x, "skin_y": y, "skin_arc": skin_arc(x, y, _apex(x, y))}
-    at = {
-        "receptor_depth": np.array(receptors[0], float),
-        "receptor_offset": np.array(receptors[1], float),
-    }
+    for name, where in zip(("receptor_depth", "receptor_offset"), receptors, strict=True):
+        places[name] = np.array(where, float)
     attributes = {"title": f"made up: {scene['name']}", "scene": scene}
-    return _filled(history_of(variables, {"time": time, **places, **at}, attributes))
+    return _filled(history_of(variables, {"time": time, **places}, attributes))
 
 
 def _apex(x: np.ndarray, y: np.ndarray) -> int:
@@ -142,31 +128,32 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     leg = np.where(time <= ramp, 0, 1)
     load = np.minimum(time / ramp, 1.0)
     crept = 1 - np.exp(-np.maximum(time - ramp, 0) / 0.4)
-    at = lambda table: np.interp(np.sqrt(CURVATURE[label]), np.sqrt(KNOWN), table)  # noqa: E731
 
-    depth = at(DEPTH) * load**0.7 * (0.86 + 0.14 * crept)
-    width = at(WIDTH) * load**0.55 * (0.9 + 0.1 * crept)
+    def at(what):
+        return np.interp(np.sqrt(CURVATURE[label]), np.sqrt(KNOWN["curvature"]), KNOWN[what])
+
+    depth = at("depth") * load**0.7 * (0.86 + 0.14 * crept)
+    width = at("width") * load**0.55 * (0.9 + 0.1 * crept)
     skin_x, skin_y = _skin(edge)
+    layered = programme != "homogeneous"
     pressure = np.array(
-        [
-            _pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous")
-            for f, w in zip(load, width, strict=True)
-        ]
+        [_pressure(skin_x, skin_y, LOAD * f, w, layered) for f, w in zip(load, width, strict=True)]
     )
-    offsets = np.round(np.arange(-5e-3, 5.01e-3, 0.25e-3), 9)
     points = [(z, 0.0) for z in DEPTHS]
     if programme == "ramp150":
+        offsets = np.round(np.arange(-5e-3, 5.01e-3, 0.25e-3), 9)
         points += [(z, o) for z in (800e-6, 915e-6) for o in offsets if o != 0]
     receptor_depth, receptor_offset = np.array(points).T
     surface_energy = np.interp(
         receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95)
     )
-    peak = np.where(receptor_depth < 850e-6, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
-    peak = peak * np.exp(-((receptor_offset / (0.5 * at(WIDTH) + 0.8e-3)) ** 2))
+    shallow = receptor_depth < 850e-6
+    peak = np.where(shallow, at("energy_600") * 0.5, at("energy_915")) * surface_energy
+    peak = peak * np.exp(-((receptor_offset / (0.5 * at("width") + 0.8e-3)) ** 2))
     energy = np.outer(load**1.2 * (1 - 0.18 * crept), peak)
     network = np.outer(load**1.2 * (1 + 0.15 * crept), peak)
 
-    bump = np.exp(-((skin_x / (0.6 * at(WIDTH) + 1e-3)) ** 2)) * (skin_y > 0)
+    bump = np.exp(-((skin_x / (0.6 * at("width") + 1e-3)) ** 2)) * (skin_y > 0)
     scaled = {
         "indentation_depth": depth,
         "contact_width": width,
@@ -182,66 +169,29 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "strain_energy_long_term_moduli": energy * 1.5,
         "strain_energy_half_stress_strain": (energy + network) / 2,
     }
-    data = {"force": LOAD * load, "leg": leg} | {
-        variable: scale * values for variable, values in scaled.items()
-    }
-    return _made(
-        _scene(name, label, rate), data, time, (skin_x, skin_y), (receptor_depth, receptor_offset)
-    )
-
-
-MM, INCH = 1e-3, 25.4e-3
-STEPS = {
-    "flat": {"shape": "flat"},
-    "line": {"shape": "line"},
-    "bar": {"shape": "bar", "width": INCH / 16, "fillet": 0.1 * MM},
-}
-PRESSED = {
-    "steady_line": (STEPS["line"], (0.5, 1.0, 1.5, 2.0), None),
-    "steady_bar_1_16_inch": (STEPS["bar"], (1.0, 2.0), None),
-    "steady_cylinder_1_8_inch": (
-        {"shape": "cylinder", "curvature": 16 / INCH},
-        (0.5, 1.0, 1.6, 2.5),
-        None,
-    ),
-    "steady_cylinder_1_4_inch": ({"shape": "cylinder", "curvature": 8 / INCH}, (1.0,), None),
-    "steady_cylinder_3_8_inch": (
-        {"shape": "cylinder", "curvature": 16 / 3 / INCH},
-        (0.6, 1.25, 1.8, 2.5),
-        None,
-    ),
-    "steady_cylinder_1_inch": ({"shape": "cylinder", "curvature": 2 / INCH}, (1.0,), None),
-    "calibration_plate": (STEPS["flat"], (0.5, 1.0, 1.5, 2.0, 2.5), None),
-    "calibration_ramp_hold": (STEPS["flat"], (1.0,), (2.0, 10.0)),
-    **{
-        f"ramp_hold_{d:.1f}_mm".replace(".", "_"): (STEPS["flat"], (d,), (2.0, 10.0))
-        for d in (0.5, 1.5, 2.0)
-    },
-    **{f"ramp_hold_{v}_mm_per_s": (STEPS["flat"], (1.0,), (v, 1.5)) for v in (8, 32)},
-}
-"""Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp
-and hold (None: steady).
-"""
+    data = {"force": LOAD * load, "leg": leg}
+    data |= {variable: scale * values for variable, values in scaled.items()}
+    scene = _scene(name, label, rate)
+    return _made(scene, data, time, (skin_x, skin_y), (receptor_depth, receptor_offset))
 
 
 def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent
     of the skin.
     """
-    stimulus, targets, timed = PRESSED[name]
+    asked = PRESSED[name]
+    targets, timed = asked["depths"], asked.get("timed")
+    if "inch" in asked:
+        stimulus = {"shape": "cylinder", "curvature": 2 / asked["inch"] / INCH}
+    else:
+        stimulus = {"shape": asked.get("shape", "flat")}
+    if stimulus["shape"] == "bar":
+        stimulus |= {"width": INCH / 16, "fillet": 0.1 * MM}
     if timed is None:
-        depth = np.concatenate(
-            [
-                [0.0],
-                *(np.linspace(a, b, 5)[1:] for a, b in zip((0, *targets), targets, strict=False)),
-            ]
-        )
-        time, leg, overstress = (
-            np.zeros(len(depth)),
-            np.repeat(np.arange(len(targets)), 4),
-            np.zeros(len(depth)),
-        )
-        leg = np.concatenate(([0], leg))
+        ends = zip((0, *targets), targets, strict=False)
+        depth = np.concatenate([[0.0], *(np.linspace(a, b, 5)[1:] for a, b in ends)])
+        time = overstress = np.zeros(len(depth))
+        leg = np.concatenate(([0], np.repeat(np.arange(len(targets)), 4)))
         motion = [{"press_to_depth": d * MM, "speed": None} for d in targets]
     else:
         speed, end = timed
@@ -266,25 +216,9 @@ def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "skin_displacement_y": -scale * np.outer(depth, dent(skin_x, skin_y)),
         "leg": leg,
     }
-    made = _made(
-        _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion},
-        data,
-        time,
-        (skin_x, skin_y),
-    )
+    scene = _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}
+    made = _made(scene, data, time, (skin_x, skin_y))
     return _with_fields(made, time[last], fields, np.zeros((len(last), len(mesh().cells))))
-
-
-WAVY = {"half_angle": np.radians(9.0), "lead_in": 8e-3, "run_out": 15e-3, "fillet": 0.0}
-RADII = np.array((38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)) * MM
-STROKES = {
-    **{f"stroke_{v}": (80, 0.25, v) for v in (1, 5, 10, 20, 40)},
-    **{f"stroke_sub_{v}": (50, 0.25, v) for v in (1, 10, 40)},
-    "step_sub": (50, 1.0, None),
-}
-"""Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped,
-pressed anew each time).
-"""
 
 
 def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
@@ -292,8 +226,9 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     more curved.
     """
     way, step, speed = STROKES[name]
-    radii = RADII[:2] if "sub" in name else RADII
-    stimulus = {"shape": "wavy", "curvatures": (1 / radii).tolist(), **WAVY}
+    radii = np.array(DATA["radii"])[: 2 if "sub" in name else None] * MM
+    wavy = {"half_angle": np.radians(9.0), **DATA["wavy"]}
+    stimulus = {"shape": "wavy", "curvatures": (1 / radii).tolist(), **wavy}
     slid = np.arange(0, way + step / 2, step) * MM
     start = 4  # increments of every press
     if speed is None:
@@ -313,19 +248,14 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     x = skin_x - np.outer(drag, upper)
     under = x + d[:, None]
     surface = (6 * MM - depth)[:, None] + np.array([shape.outline(row) for row in under])
-    lost = abs(under - WAVY["lead_in"]) < 0.4 * MM  # the sharp corner
+    lost = abs(under - wavy["lead_in"]) < 0.4 * MM  # the sharp corner
     touches = upper & (skin_y > surface) & ~lost
     y = np.where(touches, surface, skin_y)
     bend = sum(
         np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in shape.segments
     )
-    pressure = (
-        scale
-        * touches
-        * load[:, None]
-        * np.maximum(3000 + 30 * bend, 300)
-        * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
-    )
+    pressed = scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300)
+    pressure = pressed * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
     felt = np.convolve(np.pad(pressure[:, centre], 8, mode="edge"), np.ones(17) / 17, "valid")
     data = {
         "force": LOAD * load,
@@ -342,48 +272,20 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     }
     scene = _scene(name, "flat", 40)
     press = {"press_to_force": scene["motion"][0]["press_to_force"], "rate": None}
-    on = (
-        {"step": way * MM, "every": MM}
-        if speed is None
-        else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
-    )
-    scene |= {
-        "stimulus": stimulus,
-        "motion": [press, on],
-        "friction": 0.0 if speed is None else 0.7,
-    }
+    if speed is None:
+        on, friction = {"step": way * MM, "every": MM}, 0.0
+    else:
+        on, friction = {"slide": way * MM, "speed": speed * MM, "keep": "force"}, 0.7
+    scene |= {"stimulus": stimulus, "motion": [press, on], "friction": friction}
     made = _made(scene, data, time, (skin_x, skin_y), ((560e-6, 915e-6), (0.0, 0.0)))
     return _dragged(made, time[start::40]) if name == "stroke_10" else made
-
-
-RIDGES = {
-    "inner": {
-        "pitch": 0.48e-3,
-        "height": 0.15e-3,
-        "shape": "smooth",
-        "phase": "tip",
-        "limiting": 0.0,
-    },
-    "outer": None,
-    "half_width": 3.4e-3,
-}
-RIDGED = [f"ridged_40_{'flat' if k == 'flat' else 'k' + k}" for k in SURFACES]
-"""Ramps and holds on a pad with ridges."""
-PLATES = {
-    f"{pad}_stroke_{way}": (pad, sign)
-    for pad in ("plate", "ridged", "ridged_outer")
-    for way, sign in (("right", 1), ("left", -1))
-}
-"""Strokes of a plate: the pad, and 1 to the right."""
 
 
 def _receptors(data: xr.Dataset, depths, offsets, values) -> xr.Dataset:
     """The dataset with other receptors; values (time, receptor)."""
     grid = [each.ravel() for each in np.meshgrid(depths, offsets, indexing="ij")]
     old = {name: data[name].attrs for name in ("receptor_depth", "receptor_offset")}
-    data = data.drop_vars(
-        [n for n in (*data.data_vars, *data.coords) if "receptor" in data[n].dims]
-    )
+    data = data.drop_dims("receptor")
     places = {name: ("receptor", where, old[name]) for name, where in zip(old, grid, strict=True)}
     return _filled(data.assign_coords(places).assign(_of({"strain_energy_density": values(*grid)})))
 
@@ -401,7 +303,10 @@ def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     plain = history("ramp40_" + name.rsplit("_", 1)[1], scale, edge)
     trace = plain.strain_energy_density.values[:, [int(abs(DEPTHS - 915e-6).argmin())]]
     sharp = 1.5 if name.endswith("1260") else 1.0
-    values = lambda z, x: sharp * trace * np.where(x == 0, 2.0, 1.3)  # noqa: E731
+
+    def values(z, x):
+        return sharp * trace * np.where(x == 0, 2.0, 1.3)
+
     return _with_ridges(_receptors(plain, [915e-6], [-46e-6, 0.0, 46e-6], values), name, RIDGES)
 
 
@@ -411,40 +316,33 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
     """
     pad, sign = PLATES[name]
     way = np.concatenate([np.zeros(5), np.arange(0.25, 50.1, 0.25)]) * MM
-    base = history("ramp40_flat", scale, edge).isel(time=np.minimum(np.arange(len(way)), 20))
-    time = np.minimum(np.arange(len(way)) * 0.125, 0.5) + way / (10 * MM)
+    number = np.arange(len(way))
+    base = history("ramp40_flat", scale, edge).isel(time=np.minimum(number, 20))
+    time = np.minimum(number * 0.125, 0.5) + way / (10 * MM)
     base = base.assign_coords(time=("time", time, base.time.attrs))
+    load = np.minimum(number / 4, 1.0)
     own = {
         "stroke_distance": -sign * way,
         "leg": (way > 0).astype(int),
         "min_detF": np.full(len(way), 0.95),
+        "force": load * LOAD,
     }
-    base = base.assign(_of(own | {"force": np.minimum(np.arange(len(way)) / 4, 1.0) * LOAD}))
-
+    base = base.assign(_of(own))
     slid = np.minimum(way / MM, 1.0)[:, None]
 
     def values(z, x):
         felt = -0.5 * sign * np.clip(x / 46e-6, -1, 1) * (pad != "plate")
-        return scale * 200 * (1 + felt * slid) * np.minimum(np.arange(len(way)) / 4, 1.0)[:, None]
+        return scale * 200 * (1 + felt * slid) * load[:, None]
 
     offsets = np.round(np.array(sorted({*range(-240, 241, 20), -46, 46})) * 1e-6, 9)
     made = _receptors(base, [915e-6, 935e-6], offsets, values)
     if pad == "ridged_outer":
         bands = np.cos(2 * np.pi * made.skin_x.values / 0.48e-3) > 0
         made["contact_pressure"] = made.contact_pressure * bands
-    ridges = {
-        "plate": "none",
-        "ridged": RIDGES,
-        "ridged_outer": RIDGES | {"outer": {"period": None, "height": 60e-6, "shape": "smooth"}},
-    }
+    ridges = {"plate": "none", "ridged": RIDGES, "ridged_outer": RIDGES | {"outer": DATA["outer"]}}
     slide = {"slide": -sign * 50 * MM, "speed": 10 * MM, "keep": "force"}
-    return _with_ridges(
-        made,
-        name,
-        ridges[pad],
-        motion=[json.loads(made.attrs["scene"])["motion"][0], slide],
-        friction=0.65,
-    )
+    motion = [json.loads(made.attrs["scene"])["motion"][0], slide]
+    return _with_ridges(made, name, ridges[pad], motion=motion, friction=0.65)
 
 
 def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
@@ -452,17 +350,8 @@ def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
     Pa at n times.
     """
     whole, body, indenter = data.copy(), mesh(), np.zeros((len(times), 2, 2))
-    add_snapshots(
-        whole,
-        times,
-        body.points,
-        body.cells,
-        body.region,
-        displacement,
-        pressure,
-        body.regions,
-        indenter,
-    )
+    fields = displacement, pressure, body.regions, indenter
+    add_snapshots(whole, times, body.points, body.cells, body.region, *fields)
     return whole
 
 
@@ -495,13 +384,12 @@ def _pressure(x: np.ndarray, y: np.ndarray, load: float, width: float, layered: 
     inside = np.clip(1 - (x / half) ** 2, 0, None) ** 0.5 * (y > 0)
     excess = max(half - 0.5e-3, 0.0)
     if layered:
-        inside = inside * (
-            1 + 0.5 * min(1.0, excess / 1e-3) * np.exp(-(((abs(x) - excess) / 0.35e-3) ** 2))
-        )
+        twins = np.exp(-(((abs(x) - excess) / 0.35e-3) ** 2))
+        inside = inside * (1 + 0.5 * min(1.0, excess / 1e-3) * twins)
     total = np.trapezoid(inside, x)
-    return (
-        load * inside / total if total > 0 else np.where(abs(x) == 0, load / 67e-6, 0.0) * (y > 0)
-    )
+    if total > 0:
+        return load * inside / total
+    return np.where(abs(x) == 0, load / 67e-6, 0.0) * (y > 0)
 
 
 def _scene(name: str, label: str, rate: float) -> dict:
@@ -510,25 +398,12 @@ def _scene(name: str, label: str, rate: float) -> dict:
         layer: {"youngs_modulus": e, "poisson_ratio": 0.48}
         for layer, e in zip(("epidermis", "dermis", "fat"), moduli, strict=True)
     }
-    stimulus = (
-        {"shape": "flat"}
-        if label == "flat"
-        else {"shape": "cylinder", "curvature": CURVATURE[label]}
-    )
-    force = 9.80665e-3
+    curved = {"shape": "cylinder", "curvature": CURVATURE[label]}
     return {
         "name": name,
-        "specimen": {
-            "outline": OUTLINE,
-            "mesh": None,
-            "layers": layers,
-            "moduli": "long_term",
-            "prony": [{"g": 0.055, "tau": 3.25}, {"g": 0.3691, "tau": 0.3414}],
-            "ridges": "none",
-            "contact_length": 0.01,
-        },
-        "stimulus": stimulus,
+        "specimen": {"outline": OUTLINE, "layers": layers, **DATA["specimen"]},
+        "stimulus": {"shape": "flat"} if label == "flat" else curved,
         "friction": 0.0,
-        "motion": [{"press_to_force": 20 * force, "rate": rate * force}, {"hold": 2.0}],
+        "motion": [{"press_to_force": 20 * GF, "rate": rate * GF}, {"hold": 2.0}],
         "accuracy": "thesis",
     }

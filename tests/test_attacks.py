@@ -20,14 +20,6 @@ MOST_MB = 1000
 """Of memory, that any refusal may take."""
 
 
-def sampled(csv):
-    return changed(stimulus={"shape": "sampled", "csv": csv})
-
-
-def sweep(**over):
-    return {"scene": changed(accuracy="draft"), "over": over}
-
-
 def bomb(levels=9, width=10, plain=True):
     """YAML that is small, and very large when its aliases are written out; by lists, or by merged
     mappings.
@@ -58,7 +50,7 @@ def scene_of_much(folder):
 
 def profile_of_much(folder):
     many(folder / "p.csv", b"x (mm),y (mm)\n", b"1.0001,0.01\n")
-    write(folder, sampled("p.csv"))
+    write(folder, changed(stimulus={"shape": "sampled", "csv": "p.csv"}))
 
 
 def mesh_of_much(elements, size):
@@ -96,21 +88,9 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
     before = sorted(path.name for path in tmp_path.iterdir())
     # measured by a small process between: a child's peak begins with the memory of whoever started
     # it
-    process = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            MEASURED,
-            sys.executable,
-            "-m",
-            "fingerpad",
-            "plan",
-            "my_scene.yaml",
-        ],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
+    plan = [sys.executable, "-m", "fingerpad", "plan", "my_scene.yaml"]
+    words = [sys.executable, "-c", MEASURED, *plan]
+    process = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert process.returncode == 2 and process.stderr.count("\n") == 1 and said in process.stderr, (
         process.stderr
     )
@@ -122,16 +102,40 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
 # --- what is small, but no file to read, or leads out of the folder -------------------------------
 
 
-def fifo(name):
-    return lambda folder: os.mkfifo(folder / name)
+def pipe_scene(folder):
+    os.mkfifo(folder / "my_scene.yaml")
 
 
-def opt(folder):
+def pipe_profile(folder):
+    os.mkfifo(folder / "p.csv")
+
+
+def pipe_mesh(folder):
+    os.mkfifo(folder / "m.msh")
+
+
+def link_to_device(folder):
+    (folder / "p.csv").symlink_to("/dev/zero")
+
+
+def link_in_circle(folder):
+    (folder / "p.csv").symlink_to("p.csv")
+
+
+def infinite(folder):
+    (folder / "p.csv").write_text("x (mm),y (mm)\n0,0\n1,inf\n")
+
+
+def endless(folder):
+    (folder / "p.csv").write_text("x (mm)" * 200_000)
+
+
+def script(folder):
     """A script that gmsh runs when it opens the mesh beside it."""
-    script = f'SystemCall "touch {folder}/run";\n'
+    calls = f'SystemCall "touch {folder}/run";\n'
     (folder / "m.msh").write_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
-    (folder / "m.msh.opt").write_text(script)
-    (folder / "m.geo").write_text(f"$MeshFormat\n{script}")
+    (folder / "m.msh.opt").write_text(calls)
+    (folder / "m.geo").write_text(f"$MeshFormat\n{calls}")
 
 
 def circle(folder):
@@ -146,112 +150,47 @@ def long_chain(folder):
     write(folder, {"extends": "s0.yaml"})
 
 
-def infinite(folder):
-    (folder / "p.csv").write_text("x (mm),y (mm)\n0,0\n1,inf\n")
+def endless_unit(folder):
+    write(folder, changed(friction="1 " + "m" * 300_000))
 
 
-def sweep_of_files(pattern, folder="."):
-    return sweep(**{"stimulus.csv": {"folder": folder, "pattern": pattern}})
+def family_of_a_million(folder):
+    write(folder, {"over": {k: {str(n): {} for n in range(100)} for k in "abc"}})
 
 
-LONG = {"range": [0.1, 0.9], "count": 100_000}
-PATTERN = "pattern of a file's name"
+HARM = yaml.safe_load(Path(__file__).with_name("attacks.yaml").read_text(encoding="utf-8"))
 
-# name: document, what else is written into the folder, words of the line
-HARM = {
-    "a scene from a device": ("/dev/zero", None, "a device"),
-    "a scene from a pipe": ("my_scene.yaml", fifo("my_scene.yaml"), "nobody writes"),
-    "a profile from a device": (sampled("/dev/zero"), None, "a device"),
-    "a profile from a pipe": (sampled("p.csv"), fifo("p.csv"), "nobody writes"),
-    "a profile that is a folder": (sampled("."), None, "directory"),
-    "a profile of no path": (sampled("\0"), None, "stimulus.csv"),
-    "a profile called on two lines": (sampled("a\nb.csv"), None, "not an existing file"),
-    "a link to a device": (
-        sampled("p.csv"),
-        lambda f: (f / "p.csv").symlink_to("/dev/zero"),
-        "a device",
-    ),
-    "a link in a circle": (
-        sampled("p.csv"),
-        lambda f: (f / "p.csv").symlink_to("p.csv"),
-        "cannot be read",
-    ),
-    "infinity in a profile": (sampled("p.csv"), infinite, "no finite number"),
-    "one endless line in a profile": (
-        sampled("p.csv"),
-        lambda f: (f / "p.csv").write_text("x (mm)" * 200_000),
-        "stimulus.csv",
-    ),
-    "a mesh from a device": (specimen(mesh="/dev/zero"), None, "specimen.mesh"),
-    "a mesh from a pipe": (specimen(mesh="m.msh"), fifo("m.msh"), "specimen.mesh"),
-    "a mesh with a script beside it": (specimen(mesh="m.msh"), opt, "specimen.mesh"),
-    "a script as a mesh": (specimen(mesh="m.geo"), opt, "specimen.mesh"),
-    "a mesh of no path": (specimen(mesh="\0"), None, "specimen.mesh"),
-    "layers from elsewhere": (specimen(layers="../../layers"), None, "not the name of a specimen"),
-    "an outline from a device": (specimen(outline="/dev/zero"), None, "not the name of a specimen"),
-    "a scene that extends itself by another path": (None, circle, "extends itself"),
-    "a scene that extends two hundred": (None, long_chain, "one file too many"),
-    "a scene that extends a device": ({"extends": "/dev/zero"}, None, "not an existing file"),
-    "an alias of itself": ("a: &a [*a]\n", None, "aliases"),
-    "a thousand brackets": ("[" * 1000, None, "nested too deeply"),
-    "a number of very many digits": ("friction: 1" + "0" * 300_000, None, "digits"),
-    "a unit of very many letters": (changed(friction="1 " + "m" * 300_000), None, "friction"),
-    "a power tower": (
-        changed(stimulus={"shape": "cylinder", "curvature": "1 m^9^9^9"}),
-        None,
-        "stimulus.curvature",
-    ),
-    "code": ("!!python/object/apply:os.system ['touch run']", None, "not valid YAML"),
-    "a family out of the folder": (
-        {"over": {"../../x": {"../y": {}}}},
-        None,
-        "cannot be part of the name of a file",
-    ),
-    "a family of a million": (
-        {"over": {k: {str(n): {} for n in range(100)} for k in "abc"}},
-        None,
-        "makes 1000000 scenes",
-    ),
-    "a sweep of a million million": (
-        sweep(**{"friction": LONG, "motion[1].hold": LONG}),
-        None,
-        "makes 10000000000 scenes",
-    ),
-    "a sweep over the whole disk": (sweep_of_files("**/*", "/"), None, PATTERN),
-    "a sweep out of its folder": (sweep_of_files("../*"), None, PATTERN),
-    "a sweep over all that is absolute": (sweep_of_files("/*"), None, PATTERN),
-    "a sweep over nothing": (sweep_of_files(""), None, PATTERN),
-    "a sweep of a name out of its folder": (
-        sweep(friction={"values": [0.1], "name": "../x"}),
-        None,
-        "not one word",
-    ),
-    "a sweep of a device": ({"scene": "/dev/zero", "over": {"friction": [0.1]}}, None, "a device"),
-}
+
+def written(attack):
+    """The document of an attack; None where a function makes it."""
+    if "changed" in attack:
+        return changed(**attack["changed"])
+    if "over" in attack:
+        return {"scene": changed(accuracy="draft"), "over": attack["over"]}
+    if "times" in attack:
+        return attack["text"] + attack["then"] * attack["times"]
+    return attack.get("text", attack.get("document"))
 
 
 @pytest.mark.parametrize("name", HARM)
 def test_harm_is_refused_in_one_line_and_does_nothing(tmp_path, capsys, monkeypatch, name):
-    document, make, said = HARM[name]
-    folder = tmp_path / "inside"
+    attack, folder = HARM[name], tmp_path / "inside"
     folder.mkdir()
     monkeypatch.chdir(folder)
     monkeypatch.setattr("fingerpad.files.PATIENCE", 0.1)
-    if make:
-        make(folder)
-    path = folder / "my_scene.yaml"
-    if isinstance(document, str) and document.startswith("/dev"):
-        path = Path(document)
-    elif document is not None and not path.exists():
+    if "made" in attack:
+        globals()[attack["made"]](folder)
+    document = written(attack)
+    if document is not None:
         write(folder, document)
+    path = Path(attack.get("from", folder / "my_scene.yaml"))
     command = "sweep" if isinstance(document, dict) and "scene" in document else "run"
     words = [command, path, "--out", folder / "out"]
     before = sorted(str(each) for each in tmp_path.rglob("*"))
     assert main([str(word) for word in words]) == 2
     out, err = capsys.readouterr()
-    assert (
-        out == "" and err.count("\n") == 1 and said in err and len(err) < 1000 + len(str(path))
-    ), err
+    assert out == "" and err.count("\n") == 1 and attack["said"] in err, err
+    assert len(err) < 1000 + len(str(path)), err
     assert sorted(str(each) for each in tmp_path.rglob("*")) == before
 
 
@@ -275,12 +214,9 @@ def test_names_of_scenes_stay_names(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     inner = tmp_path / "a" / "b"
     inner.mkdir(parents=True)
-    for name in ("..yaml", "x\ny.yaml", " .yaml", "-.yaml"):
-        write(
-            inner, yaml.safe_dump(changed(stimulus={"shape": "sampled", "csv": "none.csv"})), name
-        )
+    names = "..yaml", "x\ny.yaml", " .yaml", "-.yaml"
+    for name in names:
+        write(inner, changed(stimulus={"shape": "sampled", "csv": "none.csv"}), name)
         assert main(["run", str(inner / name)]) == 2
         assert capsys.readouterr().err.count("\n") == 1
-    assert set(files(tmp_path)) == {
-        f"a/b/{name}" for name in ("..yaml", "x\ny.yaml", " .yaml", "-.yaml")
-    }
+    assert set(files(tmp_path)) == {f"a/b/{name}" for name in names}

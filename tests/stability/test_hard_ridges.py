@@ -6,46 +6,34 @@ Sharp tips are stroked in the catalogue of hard cases.
 
 import numpy as np
 import pytest
-from test_hard_cases import MM, SCENES, force, scene
-from test_hard_strokes import LOAD, slide, sound_stroke
+from test_hard_cases import scene
+from test_hard_strokes import LOAD, PRESS, sound_stroke
 
 from cysyk1999.measures.direction import islands
-from fingerpad import load_scene, simulate
-from fingerpad.scenes.scene import Cylinder, Flat
-from fingerpad.scenes.specimen import Specimen
+from cysyk1999.studies.common.documents import FLAT, cylinder, slide
+from fingerpad import simulate
 
 pytestmark = pytest.mark.stability
-PRESS = force(20, 40)
 
-
-@pytest.fixture(scope="module")
-def base():
-    return load_scene(SCENES / "ramp40_flat.yaml").with_accuracy("draft")
-
-
+HIGH = {"height": "0.3 mm"}
 CASES = {
     "as the scenes": ({"inner": {}}, 0.65),
-    "high, full friction": ({"inner": {"height": 0.3 * MM}}, 1.0),
-    "high, aside, limiting": (
-        {"inner": {"height": 0.3 * MM, "phase": 0.1 * MM, "limiting": 0.5}},
-        1.0,
-    ),
-    "outer, full friction": ({"inner": {"height": 0.3 * MM}, "outer": {"height": 0.06 * MM}}, 1.0),
+    "high, full friction": ({"inner": HIGH}, 1.0),
+    "high, aside, limiting": ({"inner": HIGH | {"phase": "0.1 mm", "limiting": 0.5}}, 1.0),
+    "outer, full friction": ({"inner": HIGH, "outer": {"height": "0.06 mm"}}, 1.0),
 }
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_plate_over_ridges(base, case):
+def test_plate_over_ridges(case):
     """No step is cut, no point is compressed by more than a third, and full slip is reached; there
     and 1 mm back.
     """
     ridges, friction = CASES[case]
-    specimen = Specimen(ridges=ridges)
-    layers = specimen.layers
+    motion = PRESS, slide(3.5), slide(-1)
+    asked = scene(FLAT, motion, specimen={"ridges": ridges}, friction=friction)
+    layers = asked.specimen.layers
     assert layers.epidermis.youngs_modulus == pytest.approx(10 * layers.dermis.youngs_modulus)
-    asked = scene(base, Flat(), (PRESS, slide(3.5), slide(-1))).model_copy(
-        update={"specimen": specimen, "friction": friction}
-    )
     history = simulate(asked)
     sound_stroke(history, friction)
     assert history.cutbacks.sum() == 0
@@ -56,9 +44,7 @@ def test_plate_over_ridges(base, case):
         assert islands(history)[-1] >= 5
 
 
-def test_sharpest_surface_pressed_into_ridges(base):
-    asked = scene(base, Cylinder(curvature=1259.84), (PRESS,)).model_copy(
-        update={"specimen": Specimen(ridges={"inner": {"height": 0.3 * MM, "shape": "sharp"}})}
-    )
-    history = simulate(asked)
+def test_sharpest_surface_pressed_into_ridges():
+    ridges = {"inner": HIGH | {"shape": "sharp"}}
+    history = simulate(scene(cylinder(1259.84), [PRESS], specimen={"ridges": ridges}))
     assert history.cutbacks.sum() == 0 and history.min_detF.min() > 0.5

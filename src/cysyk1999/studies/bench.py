@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,71 +25,61 @@ from threadpoolctl import threadpool_limits
 
 from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.common.documents import FLAT, RAMP, SCENES, cylinder, force, scene_of
+from cysyk1999.studies.common.plans import seconds, seconds_of_children
 from fingerpad.mechanics.linear_solver import condensation
-from fingerpad.planning.plan import plan
+from fingerpad.planning.plan import Plan, plan
 from fingerpad.results import provenance, states_found
-from fingerpad.scenes.scene import load_scene
+from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.simulation import Simulation, simulate
 from fingerpad.sweeps.engine import lay_out
 from fingerpad.sweeps.language import load_sweep
 from fingerpad.sweeps.records import read_records
 
 TABLES = SCENES.parents[1] / "figures" / "tables"
-COMMANDS = Path(sys.executable).parent
-Rows = Iterator[dict[str, Any]]
+Rows = Iterator[tuple]
+SPEED = ["what", "value", "unit", "how", "repeats", "wanted"]
+"""Columns of a row of speed; the last is the largest value that is wanted."""
+SWEEPS = ["what", "scenes", "quantity", "value", "unit"]
 
 
-def seconds(call: Callable[[], Any]) -> float:
-    """Process time (s) of a call."""
-    start = time.process_time()
-    call()
-    return time.process_time() - start
+def median(call: Callable, repeats: int, clock: Callable[[], float] = time.process_time) -> float:
+    """Median time (s) of a call."""
+    return float(np.median([seconds(call, clock) for _ in range(repeats)]))
 
 
-def median(call: Callable[[], Any], repeats: int) -> float:
-    """Median process time (s) of a call."""
-    return float(np.median([seconds(call) for _ in range(repeats)]))
-
-
-def ratio(one: Callable[[], Any], other: Callable[[], Any], repeats: int) -> float:
+def ratio(one: Callable, other: Callable, repeats: int) -> float:
     """Process time of a call over that of another: median of pairs in turn."""
     return float(np.median([seconds(one) / seconds(other) for _ in range(repeats)]))
 
 
-def row(what: str, value: float, unit: str, how: str, repeats: int = 1, target: Any = "") -> dict:
-    """A row of the table of speed; ``target``: the largest value that is wanted."""
-    return {
-        "what": what,
-        "value": float(f"{value:.4g}"),
-        "unit": unit,
-        "target": f"<= {target}" if target else "",
-        "met": value <= target if target else "",
-        "repeats": repeats,
-        "how": how,
-    }
+def planned(name: str, **changes: Any) -> tuple[Scene, Plan]:
+    """A scene of the configuration and its plan."""
+    scene = load_scene(SCENES / f"{name}.yaml").varied(changes)
+    return scene, plan(scene)
+
+
+def counted(history: Any) -> tuple[int, int, int]:
+    """Steps, Newton iterations and cuts of a history."""
+    return states_found(history), int(history.newton_iterations.sum()), int(history.cutbacks.sum())
 
 
 def _factoring(run: Simulation) -> tuple[Callable[[], None], Callable[[], None], np.ndarray]:
     """Factor, and factor and solve, the tangent of a body as it is; and its coefficients."""
-    body = run.body
-    tangent, force = body.tangent()
-    data, right = tangent.copy(), body.space.to_equations(force)
-    plain = condensation(body.space.pattern, np.zeros(0, dtype=np.int64))
-
-    def factor() -> None:
-        plain.factor(data)
+    space = run.body.space
+    tangent, load = run.body.tangent()
+    data, right = tangent.copy(), space.to_equations(load)
+    plain = condensation(space.pattern, np.zeros(0, dtype=np.int64))
 
     def factor_and_solve() -> None:
         plain.factor(data)
         plain.forward(right)
 
-    return factor, factor_and_solve, data
+    return partial(plain.factor, data), factor_and_solve, data
 
 
 def newton_iteration(repeats: int = 15) -> Rows:
     """One Newton iteration of the whole pad beside factorisation and solution of its matrix."""
-    scene = load_scene(SCENES / "ramp40_k210.yaml").varied({"effects": {"symmetry": False}})
-    run = Simulation(scene, plan(scene), None)
+    run = Simulation(*planned("ramp40_k210", effects={"symmetry": False}), None)
     stepper, steps = run.stepper, list(run.steps())
     stepper.run(steps[:10])
     factor, factor_and_solve, data = _factoring(run)
@@ -103,78 +93,64 @@ def newton_iteration(repeats: int = 15) -> Rows:
     iteration()
     size = f"{len(run.body.space.points)} nodes, {run.body.space.size} unknowns"
     size += f", {len(stepper.zone.nodes)} skin nodes in the contact zone"
-    for what, one, other, most in (
-        ("Newton iteration / (factor + solve)", iteration, factor_and_solve, 1.8),
-        (
-            "factor with Schur complement / plain factor",
-            lambda: stepper.solver.factor(data),
-            factor,
-            1.25,
-        ),
-    ):
-        yield row(what, ratio(one, other, repeats), "1", size, repeats, most)
+    times = ratio(iteration, factor_and_solve, repeats)
+    yield "Newton iteration / (factor + solve)", times, "1", size, repeats, 1.8
+    times = ratio(partial(stepper.solver.factor, data), factor, repeats)
+    yield "factor with Schur complement / plain factor", times, "1", size, repeats, 1.25
     once = 1e3 * median(factor_and_solve, repeats)
-    yield row("factor + solve", once, "ms", size, repeats)
+    yield "factor + solve", once, "ms", size, repeats, None
 
 
 def presses(repeats: int = 3) -> Rows:
     """Ramps and holds at figure resolution, and what inner ridges cost."""
-    known = {}
-    for name in ("ramp40_flat", "ramp40_k210", "ramp40_k1260", "ridged_40_flat"):
-        scene = load_scene(SCENES / f"{name}.yaml")
-        known[name] = scene, plan(scene)
-    for name, (scene, chosen) in list(known.items())[:3]:
-        history = simulate(scene, chosen)
-        how = f"{chosen.nodes} nodes (half pad), {states_found(history)} steps, "
-        how += f"{int(history.newton_iterations.sum())} Newton iterations, meshing included"
-        took = median(lambda made=(scene, chosen): simulate(*made), repeats)
-        yield row(f"ramp and hold, {name}", took, "s", how, repeats, 3)
-    ridged, plain = known["ridged_40_flat"], known["ramp40_flat"]
-    times = ratio(lambda: simulate(*ridged), lambda: simulate(*plain), repeats)
-    how = f"ramp and hold, flat: {plain[1].nodes} and {ridged[1].nodes} nodes (half pad), "
+    for name in ("ramp40_flat", "ramp40_k210", "ramp40_k1260"):
+        scene, chosen = planned(name)
+        steps, iterations, _ = counted(simulate(scene, chosen))
+        how = f"{chosen.nodes} nodes (half pad), {steps} steps, "
+        how += f"{iterations} Newton iterations, meshing included"
+        took = median(partial(simulate, scene, chosen), repeats)
+        yield f"ramp and hold, {name}", took, "s", how, repeats, 3
+    ridged, plain = planned("ridged_40_flat"), planned("ramp40_flat")
+    times = ratio(partial(simulate, *ridged), partial(simulate, *plain), repeats)
+    nodes = plain[1].nodes, ridged[1].nodes
+    how = f"ramp and hold, flat: {nodes[0]} and {nodes[1]} nodes (half pad), "
     how += f"{times:.2f} times the process time"
-    node = times * plain[1].nodes / ridged[1].nodes
-    yield row("inner ridges, cost a node over the plain pad's", node, "1", how, repeats, 3)
+    what = "inner ridges, cost a node over the plain pad's"
+    yield what, times * nodes[0] / nodes[1], "1", how, repeats, 3
     for label, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
         for nu in (0.48, 0.4999):
             layers = {name: {"poisson_ratio": nu} for name in ("epidermis", "dermis", "fat")}
             document = {"stimulus": stimulus, "motion": [force(20)], "accuracy": {"steps": 1}}
             history = simulate(scene_of(document | {"specimen": {"layers": layers}}, label))
-            count, cuts = int(history.newton_iterations.sum()), int(history.cutbacks.sum())
+            _, iterations, cuts = counted(history)
             how = f"20 gram-weight, {label}, nu = {nu}, {cuts} cuts"
-            yield row("full load in one step", count, "iterations", how, target=6)
+            yield "full load in one step", iterations, "iterations", how, 1, 6
 
 
 def strokes() -> Rows:
     """The five full strokes over the wavy surface, and a factorisation on its mesh after each."""
-    total, steps, iterations, cuts, ratios, nodes = 0.0, 0, 0, 0, [], set()
+    times, counts, ratios, nodes = [], [], [], set()
     for speed in (1, 5, 10, 20, 40):
-        scene = load_scene(SCENES / f"stroke_{speed}.yaml")
-        chosen = plan(scene)
+        scene, chosen = planned(f"stroke_{speed}")
         start = time.process_time()
-        history = simulate(scene, chosen)
-        spent = time.process_time() - start
+        counts.append(counted(simulate(scene, chosen)))
+        times.append(time.process_time() - start)
         _, factor_and_solve, _ = _factoring(Simulation(scene, chosen, None))
-        ratios.append(spent / median(factor_and_solve, 5))
-        total += spent
-        steps += states_found(history)
-        iterations += int(history.newton_iterations.sum())
-        cuts += int(history.cutbacks.sum())
+        ratios.append(times[-1] / median(factor_and_solve, 5))
         nodes.add(chosen.nodes)
+    steps, iterations, cuts = np.sum(counts, axis=0)
     how = f"{' and '.join(map(str, sorted(nodes)))} nodes, {steps} steps, {cuts} cuts, "
     how += "80 mm each at 1 to 40 mm/s"
     own = f"; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh"
     over = float(np.median(ratios))
-    yield row("five full strokes", total, "s", how, target=240)
-    yield row("a full stroke / (factor + solve)", over, "1", how + own, target=500)
-    yield row("iterations a step of a stroke", iterations / steps, "1", how, target=3)
+    yield "five full strokes", sum(times), "s", how, 1, 240
+    yield "a full stroke / (factor + solve)", over, "1", how + own, 1, 500
+    yield "iterations a step of a stroke", iterations / steps, "1", how, 1, 3
 
 
-def wall(command: list[str]) -> float:
-    """Wall time (s) of a process."""
-    start = time.perf_counter()
-    subprocess.run(command, check=True, cwd=SCENES.parents[1], capture_output=True)
-    return time.perf_counter() - start
+def command(*words: str | Path) -> Callable[[], Any]:
+    """A call of a process that must end well."""
+    return partial(subprocess.run, list(map(str, words)), check=True, capture_output=True)
 
 
 def overhead(repeats: int = 5) -> Rows:
@@ -182,9 +158,9 @@ def overhead(repeats: int = 5) -> Rows:
     code = "import fingerpad, fingerpad.simulation as s; "
     code += f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); "
     code += "s.Simulation(scene, fingerpad.plan(scene), None)"
-    took = float(np.median([wall([sys.executable, "-c", code]) for _ in range(repeats)]))
+    took = median(command(sys.executable, "-c", code), repeats, time.perf_counter)
     how = "wall time of a process that imports, plans, meshes and builds the model of ramp40_flat"
-    yield row("process overhead per job", took, "s", how, repeats, 1.5)
+    yield "process overhead per job", took, "s", how, repeats, 1.5
 
 
 # -- sweeps ---
@@ -209,28 +185,28 @@ def of_command(kind: str, scenes: int, cores: int, repeats: int = 3) -> Rows:
     with tempfile.TemporaryDirectory() as name:
         file, out = Path(name, "sweep.yaml"), Path(name)
         file.write_text(json.dumps(sweep_of(kind, scenes)))
-        command = [str(COMMANDS / "fingerpad"), "sweep", str(file), "--cores", str(cores), "--out"]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        walls = [wall([*command, str(out / str(k))]) for k in range(repeats)]
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        words = (sys.executable, "-m", "fingerpad", "sweep", file, "--cores", cores, "--out")
+        before = seconds_of_children()
+        walls = [seconds(command(*words, out / str(k)), time.perf_counter) for k in range(repeats)]
+        cpu = seconds_of_children() - before
         batches = [list(read_records(path)) for path in sorted(out.glob("0/**/*.jsonl"))]
     whole = f"{kind}, the command on {cores} core{'s' * (cores > 1)}"
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    took = f"wall time, median of {repeats}" if repeats > 1 else "wall time"
     middle = float(np.median(walls))
-    rows = [(whole, took, middle, "s"), (whole, "scenes a second", scenes / middle, "1/s")]
+    took = f"wall time, median of {repeats}" if repeats > 1 else "wall time"
+    yield whole, scenes, took, middle, "s"
+    yield whole, scenes, "scenes a second", scenes / middle, "1/s"
     if repeats > 1:
-        spread = "spread of the walls over their median"
-        rows.append((whole, spread, np.ptp(walls) / middle, "1"))
+        spread = np.ptp(walls) / middle
+        yield whole, scenes, "spread of the walls over their median", spread, "1"
     alone = np.mean([record["cpu_s"] for batch in batches for record in batch[1:]])
-    rows.append((kind, "process time a scene, all included", cpu / scenes / repeats, "s"))
-    rows.append((kind, "process time a scene, simulation alone", alone, "s"))
+    a_scene = "process time a scene"
+    yield kind, scenes, f"{a_scene}, all included", cpu / scenes / repeats, "s"
+    yield kind, scenes, f"{a_scene}, simulation alone", alone, "s"
     memory = [np.array([record["memory_MB"] for record in batch]) for batch in batches]
+    yield kind, scenes, "largest memory", max(map(np.max, memory)), "MB"
     start = min(100, len(memory[0]) // 2)
-    growth = max(float(batch[start:].max() / batch[start]) for batch in memory)
-    rows.append((kind, "largest memory", max(batch.max() for batch in memory), "MB"))
-    rows.append((kind, f"largest memory after scene {start} over memory then", growth, "1"))
-    yield from _rows(scenes, rows)
+    growth = max(batch[start:].max() / batch[start] for batch in memory)
+    yield kind, scenes, f"largest memory after scene {start} over memory then", growth, "1"
 
 
 def of_laying_out(scenes: int) -> Rows:
@@ -240,19 +216,21 @@ def of_laying_out(scenes: int) -> Rows:
         layout = lay_out(read, Path(name), 2)
         cpu = time.process_time() - start
         files = sum(path.is_file() for path in Path(name).rglob("*"))
-    rows = [("process time a scene", cpu / scenes, "s"), ("batches", len(layout.batches), "count")]
-    yield from _rows(scenes, [("laying out", *each) for each in (*rows, ("files", files, "count"))])
+    yield "laying out", scenes, "process time a scene", cpu / scenes, "s"
+    yield "laying out", scenes, "batches", len(layout.batches), "count"
+    yield "laying out", scenes, "files", files, "count"
 
 
 COLLECT = """
-import json, resource, sys
+import json, sys
 from pathlib import Path
+from time import process_time
+from fingerpad.results import peak_memory_MB
 from fingerpad.sweeps.collect import collect
 folder = Path(sys.argv[1])
 design = json.loads((folder / "design.json").read_text())
 collect(design, [folder / "all.jsonl"], folder / "a.nc", folder / "a.csv")
-used = resource.getrusage(resource.RUSAGE_SELF)
-print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+print(process_time(), peak_memory_MB(), (folder / "a.nc").stat().st_size / 1e6)
 """
 
 
@@ -270,19 +248,12 @@ def of_collecting(scenes: int, measures: int = 30) -> Rows:
                 found = [[f"measure_{k}", "end", "mm", x] for k, x in enumerate(numbers)]
                 record = {"key": keys[n], "number": n, "diagnosis": "", "nodes": 1}
                 file.write(json.dumps(record | {"measures": found}) + "\n")
-        command = [sys.executable, "-c", COLLECT, name]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        size = Path(name, "a.nc").stat().st_size / 1e6
-    cpu, peak = map(float, done.stdout.split())
-    rows = [("process time", cpu, "s"), ("largest memory", peak, "MB"), ("dataset", size, "MB")]
-    yield from _rows(scenes, [(f"collecting {measures} measures", *each) for each in rows])
-
-
-def _rows(scenes: int, rows: list[tuple[str, str, float, str]]) -> Rows:
-    for what, quantity, value, unit in rows:
-        print(f"{what}, {scenes} scenes: {quantity} {value:.4g} {unit}", flush=True)
-        number = {"what": what, "scenes": scenes, "quantity": quantity}
-        yield number | {"value": float(value), "unit": unit}
+        said = command(sys.executable, "-c", COLLECT, name)().stdout.split()
+    what = f"collecting {measures} measures"
+    for quantity, value, unit in zip(
+        ("process time", "largest memory", "dataset"), said, ("s", "MB", "MB"), strict=True
+    ):
+        yield what, scenes, quantity, float(value), unit
 
 
 def sweeps(most: int = 1000) -> pd.DataFrame:
@@ -292,19 +263,23 @@ def sweeps(most: int = 1000) -> pd.DataFrame:
         each for measured in (of_collecting, of_laying_out) for n in sizes for each in measured(n)
     ]
     one, two = (list(of_command(PRESS, most, cores)) for cores in (1, 2))
-    rows += one + two
-    gain = one[0]["value"] / two[0]["value"]
+    gain = one[0][3] / two[0][3]
     what = "scenes on two cores over scenes on one"
-    rows += _rows(most, [(f"{PRESS}, the command", what, gain, "1")])
-    rows += of_command(HELD, most // 10, 1, 1)
-    rows += of_command(SMALL, most, 2, 1)
-    return pd.DataFrame(rows)
+    rows += [*one, *two, (f"{PRESS}, the command", most, what, gain, "1")]
+    rows += [*of_command(HELD, most // 10, 1, 1), *of_command(SMALL, most, 2, 1)]
+    return pd.DataFrame(rows, columns=SWEEPS)
 
 
 def speed() -> pd.DataFrame:
     """What presses, strokes and their parts cost, and the machine."""
     with threadpool_limits(1):
-        table = pd.DataFrame([*newton_iteration(), *presses(), *strokes(), *overhead()])
+        rows = [*newton_iteration(), *presses(), *strokes(), *overhead()]
+    table = pd.DataFrame(rows, columns=SPEED)
+    value, wanted = table["value"], table.pop("wanted")
+    table["value"] = [float(f"{each:.4g}") for each in value]
+    table.insert(3, "target", [f"<= {most:g}" if most else "" for most in wanted.fillna(0)])
+    table.insert(4, "met", (value <= wanted).where(wanted.notna(), ""))
+    table.insert(5, "repeats", table.pop("repeats"))
     made_by = provenance()
     known = [made_by["processor"], f"{os.cpu_count()} cores, 1 thread, python {made_by['python']}"]
     known += [f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from fingerpad import load_scene
 from fingerpad.planning.plan import Plan
 from fingerpad.results import states_found
 from fingerpad.scenes.scene import Scene
@@ -90,6 +91,16 @@ def belief(
         "steps": states_found(history),
         "process time (s)": cost["cpu_s"],
     }
+
+
+def by_surface(
+    rows: Callable[[str, Scene], Iterable[dict[str, Any]]],
+    surfaces: Iterable[str],
+    scenes: Iterable[str],
+) -> pd.DataFrame:
+    """The rows of all surfaces, of the files of their scenes."""
+    pairs = zip(surfaces, map(load_scene, scenes), strict=True)
+    return pd.DataFrame([row for surface, scene in pairs for row in rows(surface, scene)])
 
 
 def covered(rows: pd.DataFrame) -> pd.Series:

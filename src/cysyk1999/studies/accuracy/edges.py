@@ -10,20 +10,18 @@ nodes along the skin alone.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from cysyk1999.measures.errors import norm
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.accuracy.compare import DEPTHS, looked_at
+from cysyk1999.studies.accuracy.compare import DEPTHS, by_surface, looked_at
 from cysyk1999.studies.accuracy.run import EDGED
-from fingerpad import load_scene
 from fingerpad.mechanics import contact_points
 from fingerpad.planning.plan import plan
 from fingerpad.receptors.laws import rate_by_leg
@@ -41,17 +39,6 @@ SHARES = (1.0, 0.1, 0.001, 10.0)
 """Of the smoothing that is the method's own. The third is next to none: what points alone do, whose
 pressures alternate.
 """
-
-
-@contextmanager
-def smoothed(share: float) -> Iterator[None]:
-    """Contact with another smoothing of its pressures, this many times the method's own."""
-    own = contact_points.SMOOTHING
-    contact_points.SMOOTHING = share * own
-    try:
-        yield
-    finally:
-        contact_points.SMOOTHING = own
 
 
 def kink(time: np.ndarray, values: np.ndarray) -> float:
@@ -76,7 +63,7 @@ def kinks(history: xr.Dataset) -> dict[str, float]:
         for name in ("contact_width", "peak_pressure", "centre_pressure")
     }
     for depth in DEPTHS:
-        which = int(np.argmin(np.abs(history["receptor_depth"].values - depth)))
+        which = int(np.abs(history["receptor_depth"].values - depth).argmin())
         when, _, rate = rate_by_leg(time, history["strain_energy_density"].values[:, which], leg)
         curves[f"energy rate at {1e6 * depth:.0f} um"] = when, rate
     top = float(time[leg == leg[1]].max())
@@ -102,15 +89,15 @@ def alternation(history: xr.Dataset) -> float:
 def pressed(
     scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size
 ) -> xr.Dataset:
-    """The history of a ramp and hold with outputs that are close enough to see kinks, a state at
+    """The history of a ramp and hold with so many times the method's own smoothing of pressures,
+    and outputs that are close enough to see kinks, a state at
     each, for splines between states would hide some; on its own mesh or one of another size.
     """
     asked = looked_at(scene).with_accuracy("thesis").varied({"outputs.per_leg": OUTPUTS})
     chosen = plan(asked)
-    with smoothed(share):
-        return simulate(
-            asked, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1)
-        )
+    size = sized(chosen.mesh_size)
+    with patch.object(contact_points, "SMOOTHING", share * contact_points.SMOOTHING):
+        return simulate(asked, replace(chosen, mesh_size=size, once=True, every=1))
 
 
 def _as_fine_into_the_skin(size: MeshSize) -> MeshSize:
@@ -166,11 +153,6 @@ def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
     return out
 
 
-def table(scenes: dict[str, Scene]) -> pd.DataFrame:
-    """All surfaces."""
-    return pd.DataFrame([row for surface, scene in scenes.items() for row in rows(surface, scene)])
-
-
 def accuracy_edges(job: SimpleNamespace) -> None:
     """Job: `scenes` in the order of EDGED -> `table`."""
-    publish_table(table(dict(zip(EDGED, map(load_scene, job.scenes), strict=True))), job.table[0])
+    publish_table(by_surface(rows, EDGED, job.scenes), job.table[0])

@@ -8,6 +8,7 @@ import json
 import statistics
 import timeit
 from collections.abc import Iterable, Mapping
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -43,6 +44,8 @@ them.
 QUANTITIES = (*HEADLINE, "peak energy rate")
 HALF_PLANE, WATER_BED = "elastic half-plane", "water bed"
 FINITE_ELEMENTS, UNCERTAINTY = "finite elements", "uncertainty of the reference"
+COUNTS = {"rows": ROWS, "steps": STEPS}
+"""Field of a point -> its values where it alone is refined."""
 FINE_ROWS = ROWS[-2]
 """Rows of the mesh that is like that of the preset fine, which has twice the default's steps."""
 
@@ -54,17 +57,23 @@ def series(records: Records, points: Iterable[Point], quantity: str) -> np.ndarr
     return np.array([values or [np.nan] * moments for values in found])
 
 
-def mesh_limits(records: Records, family: str, quantity: str) -> Limit:
-    """Limit (moments,) in the mesh size of the default element, at the default's time steps."""
-    rows = [rows for rows in ROWS if Point(family, rows=rows).name in records]
-    points = [Point(family, rows=n) for n in rows]
-    return limits(1 / np.array(rows), series(records, points, quantity))
+def refined(
+    records: Records, family: str, by: str, element: str = "Q2P1"
+) -> tuple[np.ndarray, list[Point]]:
+    """Falling sizes and the points that were solved with them: the default point with other "rows"
+    or "steps".
+    """
+    points = [Point(family, element, **{by: count}) for count in COUNTS[by]]
+    points = [point for point in points if records.get(point.name, {}).get("values")]
+    return 1 / np.array([getattr(point, by) for point in points]), points
 
 
-def step_limits(records: Records, family: str, quantity: str) -> Limit:
-    """Limit (moments,) in the step size on the default's mesh."""
-    points = [Point(family, steps=n) for n in STEPS]
-    return limits(1 / np.array(STEPS), series(records, points, quantity))
+def limits_in(
+    records: Records, family: str, by: str, quantity: str, element: str = "Q2P1"
+) -> Limit:
+    """Limit (moments,) in the mesh ("rows"), or in the time steps ("steps")."""
+    sizes, points = refined(records, family, by, element)
+    return limits(sizes, series(records, points, quantity))
 
 
 def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
@@ -91,7 +100,7 @@ def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.
     """
     found = {}
     for quantity in QUANTITIES:
-        mesh, steps = (of(records, family, quantity) for of in (mesh_limits, step_limits))
+        mesh, steps = (limits_in(records, family, by, quantity) for by in COUNTS)
         value = mesh.value + steps.value - series(records, [Point(family)], quantity)[0]
         unsure = mesh.uncertainty + steps.uncertainty + interplay(records, family, quantity)
         found[quantity] = value, unsure
@@ -165,10 +174,7 @@ def _row(record, reference, cpu: float, default: float) -> dict[str, Any]:
         "tolerance": point["tolerance"],
         "steps": cost.get("steps"),
         "steps per leg": "" if point["preset"] else point["steps"],
-        "nodes": cost.get("nodes"),
-        "unknowns": cost.get("unknowns"),
-        "iterations": cost.get("iterations"),
-        "cutbacks": cost.get("cutbacks"),
+        **{key: cost.get(key) for key in ("nodes", "unknowns", "iterations", "cutbacks")},
         "memory (MB)": cost["memory_MB"],
         "process time (s)": cpu,
         "cost (1 = default)": cpu / default,
@@ -185,17 +191,6 @@ def _row(record, reference, cpu: float, default: float) -> dict[str, Any]:
 def _force(scene: Scene) -> float:
     """Force (N/m) of a scene's press."""
     return scene.motion[0].press_to_force / scene.specimen.contact_length
-
-
-def half_plane_modulus(scene: Scene, width: float) -> float:
-    """Young's modulus (Pa) with which a half-plane has the contact ``width`` (m) under the plate at
-    the end of the hold.
-    """
-    radius, poisson = (
-        scene.specimen.outline.apex_radius,
-        scene.specimen.layers.dermis.poisson_ratio,
-    )
-    return 4 * _force(scene) * radius / (np.pi * (width / 2) ** 2) * (1 - poisson**2)
 
 
 def half_plane(scene: Scene, modulus: float) -> dict[str, float]:
@@ -218,15 +213,6 @@ def half_plane(scene: Scene, modulus: float) -> dict[str, float]:
     return found | {f"energy {1e6 * z:.0f} um": e for z, e in zip(DEPTHS, energies, strict=True)}
 
 
-def water_bed_tension(scene: Scene, width: float) -> float:
-    """Tension (N/m) with which a water bed has the contact ``width`` (m) under the plate at the end
-    of the hold.
-    """
-    bounds = np.log([0.3 * _force(scene), 100 * _force(scene)])
-    log = brentq(lambda log: water_bed(scene, np.exp(log))["width"] - width, *bounds, xtol=1e-6)
-    return float(np.exp(log))
-
-
 def water_bed(scene: Scene, tension: float) -> dict[str, float]:
     """What the water bed of ``tension`` (N/m) answers at the end of the hold."""
     outline = scene.specimen.outline
@@ -242,14 +228,23 @@ def _curvature(scene: Scene) -> float:
     return getattr(scene.stimulus, "curvature", 0.0)
 
 
-MODELS = {HALF_PLANE: (half_plane, half_plane_modulus), WATER_BED: (water_bed, water_bed_tension)}
-"""Name -> the model, and its constant from the width of the contact with the plate."""
+MODELS = {HALF_PLANE: (half_plane, (1e4, 1e6)), WATER_BED: (water_bed, (6.0, 2000.0))}
+"""Name -> the model, and bounds of its constant: Young's modulus (Pa), and tension (N/m)."""
+
+
+def fitted(name: str, scene: Scene, width: float) -> float:
+    """Constant with which a model has the contact ``width`` (m) under the plate at the end of the
+    hold.
+    """
+    model, bounds = MODELS[name]
+    log = brentq(lambda log: model(scene, np.exp(log))["width"] - width, *np.log(bounds))
+    return float(np.exp(log))
 
 
 def _historical(scenes, family, width: float, reference, default: float) -> list[dict[str, Any]]:
     rows, scene = [], scenes[family]
-    for name, (model, fit) in MODELS.items():
-        constant = fit(scenes["flat"], width)
+    for name, (model, _) in MODELS.items():
+        constant = fitted(name, scenes["flat"], width)
         found = {quantity: [value] for quantity, value in model(scene, constant).items()}
         cpu = min(timeit.repeat(lambda: model(scene, constant), number=1, repeat=5))  # noqa: B023
         row = {"scene": family, "model": name, "process time (s)": cpu}
@@ -265,29 +260,21 @@ def orders_table(records: Records) -> pd.DataFrame:
     (its last moment).
     """
     rows = []
-    for family in FAMILY:
-        if Point(family).name not in records:
+    families = [family for family in FAMILY if Point(family).name in records]
+    sweeps = [("mesh", "rows", element) for element in ELEMENTS] + [("steps", "steps", "Q2P1")]
+    for family, (what, by, element) in product(families, sweeps):
+        sizes, points = refined(records, family, by, element)
+        if len(points) < 3:
             continue
-        sweeps = [
-            ("mesh", element, mesh_limits, [Point(family, element, rows) for rows in ROWS])
-            for element in ELEMENTS
-        ]
-        sweeps.append(("steps", "Q2P1", step_limits, [Point(family, steps=n) for n in STEPS]))
-        for refined, element, of, points in sweeps:
-            points = [point for point in points if records.get(point.name, {}).get("values")]
-            if len(points) < 3:
-                continue
-            counts = [point.steps if refined == "steps" else point.rows for point in points]
-            sizes = 1 / np.array(counts)
-            for quantity in QUANTITIES:
-                found = series(records, points, quantity)
-                own, truth = limits(sizes, found), of(records, family, quantity).value[-1]
-                fitted = fitted_order(sizes[:-1], found[:-1, -1] - truth)
-                row = {"scene": family, "refined": refined, "element": element}
-                row |= {"quantity": quantity, "order, three finest": own.order[-1]}
-                row |= {"order, fitted to all but the finest": fitted}
-                index = 100 * _worst(own.uncertainty, found[-1])
-                rows.append(row | {"grid convergence index (%)": index})
+        for quantity in QUANTITIES:
+            last = series(records, points, quantity)[:, -1]
+            own = limits_in(records, family, by, quantity, element)
+            truth = limits_in(records, family, by, quantity).value[-1]
+            row = {"scene": family, "refined": what, "element": element, "quantity": quantity}
+            row["order, three finest"] = own.order[-1]
+            row["order, fitted to all but the finest"] = fitted_order(sizes[:-1], last[:-1] - truth)
+            index = _worst(own.uncertainty, series(records, points, quantity)[-1])
+            rows.append(row | {"grid convergence index (%)": 100 * index})
     return pd.DataFrame(rows)
 
 
@@ -302,55 +289,52 @@ def planner_table(records: Records) -> pd.DataFrame:
     at, relative to what it is of.
     """
     families = [family for family in PRESSED if Point(family).name in records]
-    energies = tuple(quantity for quantity in HEADLINE if quantity.startswith("energy"))
-    rows = []
-    for kind, counts, quantities in (
-        ("mesh", ROWS, HEADLINE),
-        ("energy", ROWS, energies),
-        ("steps", STEPS, HEADLINE),
-    ):
-        columns = {family: _largest(records, family, kind, quantities) for family in families}
-        for k, count in enumerate(counts):
-            row = {family: float(f"{column[k]:.2g}") for family, column in columns.items()}
-            rows.append({"kind": kind, "count": count} | row)
-    return pd.DataFrame(rows)
+    energies = [quantity for quantity in HEADLINE if quantity.startswith("energy")]
+    tables = {
+        kind: pd.DataFrame({of: _largest(records, of, by, quantities) for of in families})
+        for kind, by, quantities in (
+            ("mesh", "rows", HEADLINE),
+            ("energy", "rows", energies),
+            ("steps", "steps", HEADLINE),
+        )
+    }
+    table = pd.concat(tables, names=["kind", "count"])
+    return table.map(lambda error: float(f"{error:.2g}")).reset_index()
 
 
-def _largest(records: Records, family: str, kind: str, quantities: Iterable[str]) -> np.ndarray:
-    """(counts,) largest relative error of some quantities by mesh or steps, none below a finer."""
-    of_steps = kind == "steps"
-    counts = np.array(STEPS if of_steps else ROWS)
-    points = [Point(family, steps=n) if of_steps else Point(family, rows=n) for n in counts]
-    worst = np.zeros(len(counts))
+def _largest(records: Records, family: str, by: str, quantities: Iterable[str]) -> pd.Series:
+    """Largest relative error of some quantities by rows or steps, none below a finer one's."""
+    sizes, points = refined(records, family, by)
+    worst = np.zeros(len(sizes))
     for quantity in quantities:
-        known = (step_limits if of_steps else mesh_limits)(records, family, quantity)
+        known = limits_in(records, family, by, quantity)
         off = np.abs(series(records, points, quantity) / known.value - 1).max(axis=1)
-        extra = 0.0 if of_steps else interplay(records, family, quantity)
-        share = np.minimum(1.0, DEFAULT_ROWS / counts)[:, None]
-        floor = np.abs((known.uncertainty + extra * share) / known.value).max(axis=1)
+        unsure = known.uncertainty
+        if by == "rows":
+            share = np.minimum(1.0, DEFAULT_ROWS * sizes)[:, None]
+            unsure = unsure + interplay(records, family, quantity) * share
+        floor = np.abs(unsure / known.value).max(axis=-1)
         worst = np.maximum(worst, np.maximum(off, floor))
-    return np.fmax.accumulate(worst[::-1])[::-1]
+    counts = [getattr(point, by) for point in points]
+    return pd.Series(np.fmax.accumulate(worst[::-1])[::-1], counts)
 
 
 def presets_table(table: pd.DataFrame) -> pd.DataFrame:
     """The named presets: discretisation, cost and errors, of :func:`accuracy_table`."""
-    found = table[table["preset"].isin(["draft", "thesis", "fine"])]
     columns = ["preset", "scene", "nodes", "unknowns", "steps", "iterations", "memory (MB)"]
     columns += ["process time (s)", "cost (1 = default)", "error (%)"]
     columns += [*(f"{q} (%)" for q in QUANTITIES), "machine"]
-    order = found["preset"].map({"draft": 0, "thesis": 1, "fine": 2})
-    found = found.assign(order=order).sort_values(["order", "scene"])
-    return found[columns].reset_index(drop=True)
+    parts = [table[table["preset"] == preset] for preset in ("draft", "thesis", "fine")]
+    return pd.concat([part.sort_values("scene") for part in parts], ignore_index=True)[columns]
 
 
 def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
     """Mask of the points that no other beats in both; nan is on no front."""
     cost, error = np.asarray(cost, float), np.asarray(error, float)
+    order = np.lexsort((error, cost))
+    least_before = np.fmin.accumulate([np.inf, *error[order]])[:-1]
     on = np.zeros(len(cost), bool)
-    best = np.inf
-    for k in np.lexsort((error, cost)):
-        if np.isfinite(cost[k]) and error[k] < best:
-            best, on[k] = error[k], True
+    on[order] = np.isfinite(cost[order]) & (error[order] < least_before)
     return on
 
 
@@ -364,17 +348,15 @@ def error_frame(table: pd.DataFrame, scenes: Iterable[str]) -> pd.DataFrame:
     chosen = chosen.assign(**{key: chosen[key].map(_text) for key in keys})
     complete = chosen.groupby(keys)["scene"].transform("nunique") == chosen["scene"].nunique()
     grouped = chosen[complete].groupby(keys, sort=False)
+    known = grouped[["cost (1 = default)"]].mean()
     uncertain = here[here["model"] == UNCERTAINTY]
     frames = []
     for quantity in QUANTITIES:
         column = f"{quantity} (%)"
-        frame = grouped.agg(
-            **{
-                "cost (1 = default)": ("cost (1 = default)", "mean"),
-                "error (%)": (column, "max"),
-                "nodes": ("nodes", "max"),
-            }
-        ).reset_index()
+        frame = known.assign(
+            **{"error (%)": grouped[column].max(), "nodes": grouped["nodes"].max()}
+        )
+        frame = frame.reset_index()
         frame.insert(0, "quantity", quantity)
         frame["pareto"] = pareto(frame["cost (1 = default)"], frame["error (%)"])
         frame["source"] = "simulated"
@@ -401,11 +383,10 @@ def growth_frame(table: pd.DataFrame, least: float = 3000) -> pd.DataFrame:
     )
     columns = ["process time (s)", "cost (1 = default)", "memory (MB)", "iterations"]
     mean = table[standard].groupby(["element", "nodes"])[columns].mean().reset_index()
-    exponents = {}
-    for element, part in mean[mean["nodes"] >= least].groupby("element"):
-        if len(part) >= 2:
-            logs = np.log(part["nodes"]), np.log(part["process time (s)"])
-            exponents[element] = np.polyfit(*logs, 1)[0]
+    exponents = {
+        element: fitted_order(part["nodes"], part["process time (s)"])
+        for element, part in mean[mean["nodes"] >= least].groupby("element")
+    }
     return mean.assign(exponent=mean["element"].map(exponents), source="simulated")
 
 
@@ -413,15 +394,12 @@ FRAMES = {
     "accuracy_error": lambda table: error_frame(table, PRESSED),
     "accuracy_error_stroke": lambda table: error_frame(table, ("stroke",)),
     "accuracy_growth": growth_frame,
-    "accuracy_belief": lambda table: table,
-    "accuracy_drawn": lambda table: table,
-    "accuracy_ridges": lambda table: table,
-    "accuracy_shown": lambda table: table.drop_duplicates(list(table.columns[2:])).reset_index(
-        drop=True
+    "accuracy_shown": lambda table: table.drop_duplicates(
+        list(table.columns[2:]), ignore_index=True
     ),
 }
-"""Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which
-each curve is drawn once.
+"""Figure name -> its data frame, where that is not its table: of errors shown each curve is drawn
+once.
 """
 
 

@@ -47,10 +47,11 @@ def accuracy(project: Project) -> Iterator[Job]:
     read, values = project.reads(BASE), project.values_of(BASE)
     made = {"rows": [project.result("accuracy/own.csv")], "table": project.tables(["accuracy_own"])}
     yield Job(accuracy_own, read, made, values, **LONG)
+    drawn = read | {"files": [*read["files"], project.at("config/accuracy/drawn.yaml")]}
     rows = {over: project.result(f"accuracy/strokes/{over}.csv") for over in STROKED_OVER}
     for over, path in rows.items():
         name = f"accuracy_strokes_{over}"
-        yield Job(accuracy_strokes, read, {"rows": [path]}, {"over": [over]}, name, **LONG)
+        yield Job(accuracy_strokes, drawn, {"rows": [path]}, {"over": [over]}, name, **LONG)
     table = {"table": project.tables(["accuracy_strokes"])}
     yield Job(accuracy_strokes_table, {"parts": [*rows.values()]}, table)
     names = list(OUTSIDE)
@@ -64,7 +65,7 @@ def accuracy(project: Project) -> Iterator[Job]:
     rows = {kind: project.result(f"accuracy/drawn/{kind}.csv") for kind in CLASSES}
     for kind, path in rows.items():
         more = {"kind": [kind], **values}
-        yield Job(accuracy_drawn, read, {"rows": [path]}, more, f"accuracy_drawn_{kind}", **LONG)
+        yield Job(accuracy_drawn, drawn, {"rows": [path]}, more, f"accuracy_drawn_{kind}", **LONG)
     yield project.joined("accuracy_drawn", "accuracy_drawn", [*rows.values()])
     yield from _shown(project)
     for table, pictures in PICTURES.items():

@@ -1,4 +1,4 @@
-"""Errors on meshes of one's own, by element and quantity; and unseen meshes drawn at random.
+"""Errors on meshes of one's own, by element and quantity; and how such meshes are made.
 
 The table is measured on the inferred pad, its mesh split into the elements that users bring. The
 unseen meshes are slabs and half-rings of two layers, in triangles and quads as gmsh makes them,
@@ -8,15 +8,12 @@ fine at the skin and coarser inside.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import gmsh
-import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -24,12 +21,10 @@ from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.studies.accuracy.belief import finest
 from cysyk1999.studies.accuracy.compare import difference, looked_at
 from cysyk1999.studies.common.documents import FLAT, cylinder, force
-from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.meshes import pad_of
 from fingerpad import load_scene
-from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
-from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.files import write_pad
 
@@ -81,16 +76,9 @@ def measured(base: Scene, folder: Path) -> pd.DataFrame:
 
 def _on_split(scene: Scene, edge: float, kind: str, folder: Path) -> xr.Dataset:
     """History of a press on the pad's mesh split into elements of a kind, as a user's own mesh."""
-    size = replace(
-        plan(scene.with_accuracy("thesis")).mesh_size,
-        skin_edge=edge,
-        layer_edge=0.9 * edge,
-        focus=(),
-        skin_radial_edge=None,
-    )
-    mesh = build_pad_mesh(scene.specimen.outline, size)
     path = folder / f"{kind}.msh"
-    write_pad(mesh if kind == "quad9" else split(mesh, kind), path)
+    edges = {"skin_edge": edge, "layer_edge": 0.9 * edge, "focus": (), "skin_radial_edge": None}
+    write_pad(pad_of(scene, kind, **edges), path)
     accuracy = {"element": SOLVED[kind], "tolerance": 0.5, "once": True}
     own = {"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy}
     return simulate(scene.varied(own))
@@ -106,42 +94,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     return found
 
 
-# --- unseen ones ---
-
-
-def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
-    """A press on a mesh of one's own, in a document; how the mesh is made stands under ``own``."""
-
-    def between(low, high):
-        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
-
-    shape, kind = draw.choice(["slab", "ring"]), draw.choice(["tri", "tri", "quad"])
-    own = {"shape": shape, "kind": kind, "order": int(draw.integers(1, 3))}
-    cover, foam = float(draw.uniform(0.5, 1.5)), float(draw.uniform(2, 4))
-    flat = shape == "ring" and draw.integers(3) == 0
-    layers = {
-        name: {
-            "youngs_modulus": f"{draw.uniform(*moduli):.3g} kPa",
-            "poisson_ratio": round(float(draw.uniform(0.3, 0.49)), 3),
-        }
-        for name, moduli in (("cover", (30, 200)), ("foam", (15, 60)))
-    }
-    own |= {
-        "edge": between(0.12, 0.6),
-        "coarser": float(draw.choice([1, 2, 4])),
-        "thicknesses": (cover, foam),
-        "radius": float(draw.uniform(6, 12)),
-    }
-    depths = [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"]
-    return {
-        "own": own,
-        "specimen": {"fixed": ["base"], "layers": layers, "contact_length": "10 mm"},
-        "stimulus": FLAT if flat else cylinder(float(f"{between(20, 400):.3g}")),
-        "motion": [force(float(f"{between(2, 30):.3g}"))],
-        "outputs": {"receptors": {"depths": depths, "offsets": ["0 mm", "0.5 mm"]}},
-        "effects": {"finite_strain": "on"},
-        "accuracy": "draft",
-    }
+# --- made by gmsh ---
 
 
 def finer_own(own: dict[str, Any]) -> dict[str, Any]:
@@ -211,12 +164,6 @@ def _ring(own):
         back = [-arc for arc in reversed(arcs[k + 1])]
         surfaces.append(geo.addPlaneSurface([geo.addCurveLoop([*arcs[k], right, *back, -left])]))
     return surfaces, arcs[0], arcs[2]
-
-
-def unseen(seed: int, count: int) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Name, class and document of presses on meshes drawn at random."""
-    for number in range(count):
-        yield f"own_{number}", "own", drawn_own(np.random.default_rng((seed, 1000 + number)))
 
 
 def accuracy_own(job: SimpleNamespace) -> None:

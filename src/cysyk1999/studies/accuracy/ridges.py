@@ -13,13 +13,11 @@ import json
 from types import SimpleNamespace
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from cysyk1999.publishing.write import publish_table
-from cysyk1999.studies.accuracy.compare import resized
+from cysyk1999.studies.accuracy.compare import by_surface, resized
 from cysyk1999.studies.common.ridges import boundary
-from fingerpad import load_scene
 from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
@@ -102,13 +100,6 @@ def rows(surface: str, base: Scene) -> list[dict[str, object]]:
     return out
 
 
-def table(scenes: dict[str, Scene]) -> pd.DataFrame:
-    """All surfaces."""
-    return pd.DataFrame([row for surface, scene in scenes.items() for row in rows(surface, scene)])
-
-
 def accuracy_ridges(job: SimpleNamespace) -> None:
     """Job: `scenes` in the order of SURFACES -> `table`."""
-    publish_table(
-        table(dict(zip(SURFACES, map(load_scene, job.scenes), strict=True))), job.table[0]
-    )
+    publish_table(by_surface(rows, SURFACES, job.scenes), job.table[0])

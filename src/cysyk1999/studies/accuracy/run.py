@@ -158,8 +158,7 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
 def _run(point: Point, scene: Scene, chosen: Plan) -> xr.Dataset:
     """History of a point, discretised before."""
     mesh = build_pad_mesh(scene.specimen.outline, chosen.mesh_size)
-    kind = MESHES.get(chosen.element, "quad4")
-    run = Simulation(scene, chosen, mesh if kind == "quad9" else split(mesh, kind))
+    run = Simulation(scene, chosen, split(mesh, MESHES.get(chosen.element, "quad4")))
     share, default = point.tolerance / DEFAULT_TOLERANCE, NewtonSettings()
     run.stepper.settings = replace(
         default,

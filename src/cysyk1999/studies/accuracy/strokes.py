@@ -21,7 +21,7 @@ import pandas as pd
 
 from cysyk1999.publishing.write import publish_table, read_frame, write_frame
 from cysyk1999.studies.accuracy.compare import difference
-from cysyk1999.studies.accuracy.drawn import drawn
+from cysyk1999.studies.accuracy.drawn import DRAWN, SCENES
 from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, DEFAULT_STEPS
 from cysyk1999.studies.common.documents import FLAT, scene_of
 from fingerpad.planning.errors import PLATES, WAVES
@@ -37,31 +37,26 @@ default's mesh.
 FINEST = 22, 40
 """Elements and steps of the truth."""
 STROKED_OVER = PLATES, WAVES
-SEEDS, COUNT = (22, 23), 60
-"""Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they
-are, and over a plate instead.
-"""
 RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
 """With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
 LARGEST, MEAN = "largest", "root mean square"
 """Columns: of the errors of all strokes."""
 
 
-def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
-    """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then
-    all in time.
+def strokes(over: str) -> dict[str, Scene]:
+    """The strokes over plates or over waves, by name: those over waves as they are drawn, or over a
+    plate instead, steady ones, and then all in time.
     """
     change = {"stimulus": FLAT} if over == PLATES else {}
-    found = {
-        f"{seed}_{name}": document | change
-        for seed in seeds
-        for name, kind, document in drawn(seed, COUNT)
-        if kind == "wavy"
-    }
+    waves = {f"22_{name}": each for name, each in SCENES.items() if each["class"] == "wavy"}
+    waves |= {f"23_{name}": each for name, each in DRAWN["strokes"].items()}
+    found = {name: document | change for name, document in waves.items()}
     for (name, document), speed in zip(list(found.items()), cycle(SPEEDS), strict=False):
         press, slide = document["motion"]
         timed = [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]
         found[f"{name}_timed"] = document | {"motion": timed}
+    for document in found.values():
+        document.pop("class", None)
     return {name: scene_of(document, name) for name, document in found.items()}
 
 

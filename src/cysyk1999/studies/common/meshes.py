@@ -1,9 +1,13 @@
 """Meshes made of a built one on its nodes: other elements, and worse shapes, as users have."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from fingerpad.planning.plan import plan
+from fingerpad.scenes.scene import Scene
+from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import PadMesh
 
@@ -20,8 +24,8 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
     mesh : PadMesh
         Mesh of "quad9" elements.
     kind : str
-        "quad4" for four quads of each, or "tri6" for two triangles of each. A symmetric mesh
-        stays symmetric.
+        "quad4" for four quads of each, "tri6" for two triangles of each, or "quad9" for the mesh
+        itself. A symmetric mesh stays symmetric.
 
     Returns
     -------
@@ -33,6 +37,8 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
         If `kind` is another one.
     """
     cells, curves = mesh.cells, mesh.curves
+    if kind == "quad9":
+        return mesh
     if kind == "quad4":
         parts = [cells[:, part] for part in QUARTERS]
         curves = {name: line[:, [0, 2, 2, 1]].reshape(-1, 2) for name, line in curves.items()}
@@ -43,9 +49,15 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
             for rising, falling in zip(RISING, FALLING, strict=True)
         ]
     else:
-        raise ValueError(f"quad9 cannot be split into {kind}; allowed: quad4, tri6")
+        raise ValueError(f"quad9 cannot be split into {kind}; allowed: quad4, tri6, quad9")
     region = np.tile(mesh.region, len(parts))
     return replace(mesh, cells=np.concatenate(parts), element=kind, region=region, curves=curves)
+
+
+def pad_of(scene: Scene, kind: str, **edges: Any) -> PadMesh:
+    """The thesis's mesh of a scene's pad with some edges changed, split into elements of a kind."""
+    size = replace(plan(scene.with_accuracy("thesis")).mesh_size, **edges)
+    return split(build_pad_mesh(scene.specimen.outline, size), kind)
 
 
 def distorted(mesh: PadMesh, share: float = 0.3) -> PadMesh:

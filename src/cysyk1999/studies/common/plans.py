@@ -1,9 +1,11 @@
-"""Changed plans, and a limit on the time that their runs may take."""
+"""Changed plans, the time that their runs take, and a limit on it."""
 
 from __future__ import annotations
 
+import os
 import signal
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -39,6 +41,19 @@ def with_effects(chosen: Plan, state: str | None = None, **switched: bool) -> Pl
     timed = effects["viscoelasticity"].on
     state = "long_term" if timed else state or chosen.state
     return replace(chosen, effects=effects, timed=timed, state=state)
+
+
+def seconds(call: Callable[[], object], clock: Callable[[], float] = time.process_time) -> float:
+    """Time (s) that a call takes."""
+    start = clock()
+    call()
+    return clock() - start
+
+
+def seconds_of_children() -> float:
+    """Process time (s) of the processes that this one has started and that have ended."""
+    times = os.times()
+    return times.children_user + times.children_system
 
 
 class OutOfTime(BaseException):

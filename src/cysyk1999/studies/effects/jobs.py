@@ -13,7 +13,8 @@ from cysyk1999.studies.effects.run import effects_study
 @part("effects")
 def effects(project: Project) -> Iterator[Job]:
     """What each effect changes and costs, and the planner's choices and rules against that."""
-    read = {"files": [project.thesis_specimen()]}
+    files = [project.thesis_specimen(), project.at("config/effects/drawn.yaml")]
+    read = {"files": files}
     data = {name: project.result(f"effects/{name}.csv") for name in ("changes", "choices")}
     for name, path in data.items():
         made = {"data": [path]}

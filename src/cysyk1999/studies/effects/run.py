@@ -18,24 +18,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+import yaml
 
 from cysyk1999.publishing.write import write_frame
-from cysyk1999.studies.common.documents import (
-    FLAT,
-    RAMP,
-    TWO_WAVES,
-    cylinder,
-    depth,
-    force,
-    hold,
-    scene_of,
-    slide,
-)
+from cysyk1999.studies.common.documents import CONFIG, RAMP, cylinder, scene_of
 from cysyk1999.studies.common.plans import with_effects
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.effect import OWN_PAIR
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.planning.plan import Plan, PlanError, plan
+from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES, Rules
 from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
@@ -53,12 +44,8 @@ ANSWERS = {
 SLIDES_ONLY = ("tangential_force", "centre_lateral_displacement")
 KNOWN_SAFE = 0.1
 """Least share of the accuracy that an effect is worth carrying for."""
-SEEDS, SCENES = (31, 404, 505), 40
-"""Scenes drawn of each seed. Seeds 1999, 20261121, 7, 2026 and 31 have set the planner's rules: the
-others are unseen.
-"""
-RIDGED = 6
-"""One press in so many has ridges."""
+FILE = CONFIG / "effects" / "drawn.yaml"
+"""Scenes drawn at random across the planner's thresholds."""
 FLATTENED = 1e-8
 """m, height of ridges that change nothing."""
 MOST_NODES = 6000
@@ -218,70 +205,14 @@ def planned(effect: str, scene: Scene) -> bool:
 # -- on scenes drawn at random ---
 
 
-def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
-    """Scenes across the planner's thresholds: presses and strokes, forces over three decades, times
-    over six, six accuracies.
-
-    Some presses are of pads with inner ridges, of heights over two decades.
-    """
-    draw = np.random.default_rng(seed)
-    made = 0
-    while made < count:
-        kind, document = _drawn(draw, ridged=made % RIDGED == 0)
-        scene = scene_of(document, f"{kind} {made}")
-        try:
-            plan(scene)
-        except PlanError:
-            continue  # so fast that inertia would matter
-        made += 1
-        yield scene
+def drawn() -> Iterator[tuple[int, Scene]]:
+    """The scenes drawn at random, and the seed of the draw that each is of."""
+    for seed, documents in yaml.safe_load(FILE.read_text(encoding="utf-8")).items():
+        for name, document in documents.items():
+            yield seed, scene_of(document, name)
 
 
-def _drawn(draw: np.random.Generator, ridged: bool) -> tuple[str, dict[str, Any]]:
-    """Kind and document of a scene; the order of the draws decides what a seed gives."""
-
-    def between(low, high):
-        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
-
-    def pick(*values):
-        return values[draw.integers(len(values))]
-
-    kind = pick("force", "force", "force", "depth", "stroke")
-    stimulus = pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000)))
-    load, seconds = between(0.01, 30), pick(None, *(between(3e-3, 1e4) for _ in range(5)))
-
-    def rate(target):
-        return None if seconds is None else target / seconds
-
-    if kind == "stroke":
-        load, friction = between(2, 25), pick(0.0, between(0.02, 1.0), between(0.02, 1.0))
-        stimulus = pick(FLAT, TWO_WAVES, cylinder(between(20, 200)))
-        speed = None if seconds is None else between(1e-3, 100)
-        motion = [force(load, rate(load)), slide(3, speed)]
-    else:
-        target = between(5e-3, 1.0) if kind == "depth" else load
-        motion = [(depth if kind == "depth" else force)(target, rate(target))]
-        friction = pick(0.0, 0.0, 0.0, between(0.003, 1.0))
-        if seconds is not None and pick(True, False):
-            motion.append(hold(between(1e-2, 1e3)))
-    share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
-    terms = ((0.055, 3.25), (0.3691, 0.3414))
-    prony = [{"g": share * g, "tau": f"{tau} s"} for g, tau in terms] if share else "none"
-    accuracy = pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005)
-    specimen: dict[str, Any] = {"prony": prony}
-    if kind != "stroke" and ridged:
-        inner = {"height": f"{between(0.5, 100):.3g} um", "phase": pick("tip", "valley")}
-        specimen["ridges"] = {"inner": inner}
-    return kind, {
-        "stimulus": stimulus,
-        "motion": motion,
-        "friction": friction,
-        "accuracy": accuracy,
-        "specimen": specimen,
-    }
-
-
-def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
+def verdicts() -> pd.DataFrame:
     """What each effect that the planner chose or left out would have been worth: one row a scene
     and effect.
 
@@ -291,7 +222,7 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
     "worth" is the largest change of a headline quantity, "share" that over the accuracy.
     """
     rows = []
-    for seed, scene in ((n, scene) for n in seeds for scene in generated(count, n)):
+    for seed, scene in drawn():
         chosen = plan(scene)
         for effect, base, ways in _trials(scene, chosen):
             worth, of = _worth(scene, base, ways)

@@ -14,7 +14,6 @@ from __future__ import annotations
 import inspect
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -31,6 +30,7 @@ import yaml
 
 from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.plans import seconds_of_children
 from cysyk1999.studies.peers import with_felupe, with_ngsolve
 from fingerpad import load_scene, plan
 from fingerpad.results import provenance
@@ -114,15 +114,14 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
 
 def timed(command: list[str]) -> dict[str, Any] | None:
     """What a process prints last, with its process time as ``process``; None if it fails."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before = seconds_of_children()
     threads = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     how = {"capture_output": True, "text": True, "env": os.environ | threads}
     try:
         done = subprocess.run(command, timeout=PATIENCE, check=True, **how)
     except (subprocess.TimeoutExpired, subprocess.CalledProcessError):
         return None
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    spent = seconds_of_children() - before
     return json.loads(done.stdout.strip().splitlines()[-1]) | {"process": spent}
 
 

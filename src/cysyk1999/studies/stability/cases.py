@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import yaml
 
 from cysyk1999.studies.common.documents import CONFIG, FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import corners_only, distorted, split
-from fingerpad.planning.plan import Plan, plan
+from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for, write_pad
 from fingerpad.specimen.build import build_pad_mesh
@@ -149,21 +150,24 @@ class Case:
         if self.mesh is None:
             return scene
         path = Path(folder).absolute() / "external.msh"
-        write_pad(MESHES[self.mesh](scene, plan(scene)), path)
+        write_pad(_mesh(self.mesh, scene), path)
         specimen = document.get("specimen", {}) | {"mesh": str(path)}
         return scene_of(document | {"specimen": specimen}, self.name, FOLDER)
 
 
-def _graded(scene: Scene, chosen: Plan) -> PadMesh:
-    """Edges of 15 um under the apex that grow to about a hundred times as much."""
-    size = replace(
-        chosen.mesh_size,
-        focus=((0.0, 15e-6),),
-        skin_radial_edge=15e-6,
-        growth=2.0,
-        coarse_edge=1.8e-3,
-    )
-    return build_pad_mesh(scene.specimen.outline, size)
+def _mesh(name: str, scene: Scene) -> PadMesh:
+    """The mesh that a scene's plan would have built, changed; "graded" has edges of 15 um under the
+    apex that grow to about a hundred times as much.
+    """
+    chosen = plan(scene)
+    if name == "graded":
+        finest = {"focus": ((0.0, 15e-6),), "skin_radial_edge": 15e-6}
+        size = replace(chosen.mesh_size, growth=2.0, coarse_edge=1.8e-3, **finest)
+        return build_pad_mesh(scene.specimen.outline, size)
+    mesh = mesh_for(scene, chosen)
+    for change in MESHES[name]:
+        mesh = change(mesh)
+    return mesh
 
 
 def _distorted(mesh: PadMesh) -> PadMesh:
@@ -180,35 +184,20 @@ def _off_centre(mesh: PadMesh) -> PadMesh:
     return replace(mesh, points=mesh.points + [0.7e-3, 0.0], symmetric=False)
 
 
-def _triangles(mesh: PadMesh) -> PadMesh:
-    return split(mesh, "tri6")
-
-
-def _changed(*changes: Callable[[PadMesh], PadMesh]) -> Callable[[Scene, Plan], PadMesh]:
-    """The mesh that the plan would have built, changed in turn."""
-
-    def mesh(scene: Scene, chosen: Plan) -> PadMesh:
-        made = mesh_for(scene, chosen)
-        for change in changes:
-            made = change(made)
-        return made
-
-    return mesh
-
-
-MESHES: dict[str, Callable[[Scene, Plan], PadMesh]] = {
-    "as_built": _changed(),
-    "graded": _graded,
-    "off_centre": _changed(_off_centre),
-    "distorted": _changed(distorted),
-    "distorted_quads": _changed(_distorted),
-    "linear_quads": _changed(corners_only),
-    "triangles": _changed(_triangles),
-    "linear_triangles": _changed(_triangles, corners_only),
-    "distorted_triangles": _changed(_distorted, _triangles),
-    "distorted_linear_triangles": _changed(distorted, _triangles, corners_only),
+_triangles = partial(split, kind="tri6")
+MESHES: dict[str, list[Callable[[PadMesh], PadMesh]]] = {
+    "as_built": [],
+    "graded": [],
+    "off_centre": [_off_centre],
+    "distorted": [distorted],
+    "distorted_quads": [_distorted],
+    "linear_quads": [corners_only],
+    "triangles": [_triangles],
+    "linear_triangles": [_triangles, corners_only],
+    "distorted_triangles": [_distorted, _triangles],
+    "distorted_linear_triangles": [distorted, _triangles, corners_only],
 }
-"""Name in the catalogue -> the external mesh of a scene without one and its plan."""
+"""Name of an external mesh in the catalogue -> what is done to the one that would be built."""
 
 
 def _case(name: str, entry: Mapping[str, Any]) -> Case:

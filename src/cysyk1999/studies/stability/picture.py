@@ -11,6 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
 
 from cysyk1999.publishing.style import GREY, INK, PAGE_WIDTH, TALLEST, sheet, styled
 from cysyk1999.publishing.write import publish, publish_table
@@ -36,16 +37,11 @@ MEASURES = {
 its 5-point average over the peak, inside the contact. Half the step: largest change of force,
 depth, width, stored energy and tangential force at the ends of the legs.
 """
-OF_TEACHING = (
-    "completed",
-    "cuts",
-    "factorisations",
-    "energy",
-    "complementarity",
-    "det_f",
-    "checkerboard",
-    "off",
-)
+OF_TEACHING = [
+    name
+    for name in MEASURES
+    if name not in ("effort", "balance", "symmetry", "halving", "solver", "reference")
+]
 """What the teaching methods are shown by."""
 OUTCOMES = {
     "stable": "stable",
@@ -129,13 +125,8 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
     out["how it ended"] = out["outcome"] + said.fillna("") + cure.fillna("")
     out.insert(0, "case", out.index)
     out.insert(0, "no.", default["number"])
-    out.attrs["columns"] = [
-        "no.",
-        "case",
-        "what makes it hard",
-        "how it ended",
-        "nearest to its limit",
-    ]
+    shown = ["no.", "case", "what makes it hard", "how it ended", "nearest to its limit"]
+    out.attrs["columns"] = shown
     return out
 
 
@@ -190,44 +181,22 @@ def heat_map(frame: pd.DataFrame) -> Figure:
         "The methods below differ "
         "from this package in one thing each."
     )
-    fig.text(
-        0.012,
-        1 - 0.24 / height,
-        intro,
-        ha="left",
-        va="top",
-        fontsize=6,
-        color=GREY,
-        linespacing=1.35,
-    )
-    shown = {method: [name for name in MEASURES if name in OF_TEACHING] for method in METHODS}
+    small = {"fontsize": 6, "color": GREY}
+    fig.text(0.012, 1 - 0.24 / height, intro, va="top", linespacing=1.35, **small)
+    shown = dict.fromkeys(METHODS, OF_TEACHING)
     shown[DEFAULT] = [name for name in MEASURES if name != "off"]
     rows = sum(map(len, shown.values()))
     pitch, top = (height - _TOP - _BOTTOM - _GAP * len(TEACHING)) / rows, height - _TOP
+    left, wide = _LEFT / width, 1 - (_LEFT + _RIGHT) / width
+    above = {"xytext": (0, 3), "xycoords": "axes fraction", "textcoords": "offset points"}
     for method, names in shown.items():
         low = top - pitch * len(names)
-        box = (
-            _LEFT / width,
-            low / height,
-            1 - (_LEFT + _RIGHT) / width,
-            pitch * len(names) / height,
-        )
-        ax, top = fig.add_axes(box), low - _GAP
+        ax = fig.add_axes((left, low / height, wide, pitch * len(names) / height))
+        top = low - _GAP
         part = frame[frame["method"] == method]
         drawn = _panel(ax, part, cases, names)
-        said = ", ".join(tally(part))
-        ax.annotate(
-            METHODS[method],
-            (0, 1),
-            (0, 3),
-            "axes fraction",
-            "offset points",
-            fontweight="bold",
-            fontsize=6.2,
-        )
-        ax.annotate(
-            said, (0.25, 1), (0, 3), "axes fraction", "offset points", fontsize=6, color=GREY
-        )
+        ax.annotate(METHODS[method], (0, 1), fontweight="bold", fontsize=6.2, **above)
+        ax.annotate(", ".join(tally(part)), (0.25, 1), **above, **small)
         if method == DEFAULT:
             _groups(ax, cases)
     numbers = [1, *range(10, len(cases) + 1, 10)]
@@ -238,22 +207,16 @@ def heat_map(frame: pd.DataFrame) -> Figure:
 
 def _panel(ax: Axes, part: pd.DataFrame, cases: pd.Series, names: list[str]):
     """One method: its measures by cases; returns what its colours are of."""
-    share = (
-        part.pivot(index="measure", columns="case", values="share")
-        .reindex(index=names, columns=cases.index)
-        .to_numpy(float)
-    )
-    with np.errstate(divide="ignore"):
-        image = np.ma.masked_invalid(np.log10(np.clip(share, 1e-3, 1e3)))
-    norm, colours = (
-        TwoSlopeNorm(0.0, -2.0, 1.0),
-        mpl.colormaps["RdYlBu_r"].resampled(24).with_extremes(bad="0.88"),
-    )
-    drawn = ax.imshow(image, norm=norm, cmap=colours, aspect="auto", interpolation="none")
+    shares = part.pivot(index="measure", columns="case", values="share")
+    share = shares.reindex(index=names, columns=cases.index).to_numpy(float)
+    image = np.ma.masked_invalid(np.log10(np.clip(share, 1e-3, 1e3)))
+    colours = mpl.colormaps["RdYlBu_r"].resampled(24).with_extremes(bad="0.88")
+    look = {"aspect": "auto", "interpolation": "none"}
+    drawn = ax.imshow(image, norm=TwoSlopeNorm(0.0, -2.0, 1.0), cmap=colours, **look)
     for i, j in np.argwhere(np.isposinf(share)):
-        ax.add_patch(mpl.patches.Rectangle((j - 0.5, i - 0.5), 1, 1, color="black", lw=0))
+        ax.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, color="black", lw=0))
     for j in np.flatnonzero(~cases.index.isin(part["case"])):
-        ax.add_patch(mpl.patches.Rectangle((j - 0.5, -0.5), 1, len(names), color="white", lw=0))
+        ax.add_patch(Rectangle((j - 0.5, -0.5), 1, len(names), color="white", lw=0))
     ax.set_yticks(range(len(names)), [MEASURES[name][0] for name in names], fontsize=6)
     ax.set_xticks([])
     ax.tick_params(length=0, pad=2)
@@ -261,66 +224,48 @@ def _panel(ax: Axes, part: pd.DataFrame, cases: pd.Series, names: list[str]):
         ax.axhline(row - 0.5, color="white", lw=0.5)
     for start in _starts(cases)[1:]:
         ax.axvline(start - 0.5, color="white", lw=1.2)
-    for spine in ax.spines.values():
-        spine.set_visible(False)
+    ax.spines[:].set_visible(False)
     return drawn
 
 
-def _starts(cases: pd.Series) -> list[int]:
+def _starts(cases: pd.Series) -> np.ndarray:
     """Where groups begin."""
-    return [k for k in range(len(cases)) if k == 0 or cases.iloc[k] != cases.iloc[k - 1]]
+    return np.flatnonzero(cases != cases.shift())
 
 
 def _groups(ax: Axes, cases: pd.Series) -> None:
     """Names of the groups over their cases."""
     starts = _starts(cases)
+    turned = {"rotation": 50, "rotation_mode": "anchor", "va": "bottom", "fontsize": 6}
     for start, end in zip(starts, [*starts[1:], len(cases)], strict=True):
-        middle = (start + end - 1) / 2
-        ax.annotate(
-            cases.iloc[start],
-            (middle, -0.5),
-            (0, 13),
-            "data",
-            "offset points",
-            ha="left",
-            va="bottom",
-            rotation=50,
-            fontsize=6,
-            rotation_mode="anchor",
-        )
+        middle = ((start + end - 1) / 2, -0.5)
+        ax.annotate(cases.iloc[start], middle, (0, 13), textcoords="offset points", **turned)
 
 
 def _legend(fig: Figure, drawn, height: float, width: float) -> None:
     """What a colour means, and what a row is."""
-    bar = fig.colorbar(
-        drawn,
-        cax=fig.add_axes((0.1 / width, 0.62 / height, 1.45 / width, 0.09 / height)),
-        orientation="horizontal",
-    )
+    place = fig.add_axes((0.1 / width, 0.62 / height, 1.45 / width, 0.09 / height))
+    bar = fig.colorbar(drawn, cax=place, orientation="horizontal")
     bar.set_ticks([-2, -1, 0, 1], labels=["1 %", "10 %", "limit", "10 ×"], fontsize=6)
     bar.minorticks_off()
     bar.ax.set_title("share of the limit that is used up", fontsize=6)
     bar.outline.set_edgecolor(INK)
     kinds = {"black": "not completed", "0.88": "not judged", "white": "not tried, or no such mesh"}
-    patches = [
-        mpl.patches.Patch(facecolor=colour, edgecolor=GREY, lw=0.4, label=text)
-        for colour, text in kinds.items()
-    ]
+    look = {"edgecolor": GREY, "lw": 0.4}
+    close = {"handlelength": 1, "handleheight": 1, "labelspacing": 0.35, "borderaxespad": 0}
     fig.legend(
-        handles=patches,
+        handles=[Patch(facecolor=colour, label=text, **look) for colour, text in kinds.items()],
         loc="upper left",
         bbox_to_anchor=(0.08 / width, 0.42 / height),
         fontsize=6,
-        handlelength=1,
-        handleheight=1,
-        labelspacing=0.35,
-        borderaxespad=0,
+        **close,
     )
+    tiny = {"fontsize": 5.6, "va": "top"}
     for k, (name, meaning) in enumerate(MEASURES.values()):
         column, row = divmod(k, (len(MEASURES) + 1) // 2)
         x, y = 1.8 + 2.75 * column, 0.82 - 0.108 * row
-        fig.text(x / width, y / height, name, fontsize=5.6, va="top", fontweight="bold")
-        fig.text((x + 0.78) / width, y / height, meaning, fontsize=5.6, va="top")
+        fig.text(x / width, y / height, name, fontweight="bold", **tiny)
+        fig.text((x + 0.78) / width, y / height, meaning, **tiny)
 
 
 def stability_picture(job: SimpleNamespace) -> None:

@@ -31,6 +31,10 @@ def _loaded(case: Case, share: float) -> Case:
     return _with(case, motion=motion)
 
 
+def _loads(*shares: float) -> dict[str, Change]:
+    return {f"load: {share:g} of it": partial(_loaded, share=share) for share in shares}
+
+
 def _usual_layers(case: Case) -> Case:
     """The case with the usual moduli in layers that have their own."""
     case = _layers(case, youngs_modulus="15 kPa")
@@ -51,11 +55,6 @@ def _layers(case: Case, **keys: Any) -> Case:
         layers = [layer | keys for layer in specimen[shape]["layers"]]
         return _with(case, specimen=specimen | {shape: specimen[shape] | {"layers": layers}})
     return case
-
-
-def _frictionless(case: Case) -> Case:
-    scene = {key: value for key, value in case.scene.items() if key != "friction"}
-    return replace(case, scene=scene, may_fail=False)
 
 
 def _pressed_only(case: Case) -> Case:
@@ -85,13 +84,11 @@ def _finite(case: Case) -> Case:
 
 STEPS = {"time: 8 times the steps": _steps}
 MESH = {"mesh: planned for accuracy: thesis": _thesis_mesh}
-LOAD = {"load: 0.2 of it": partial(_loaded, share=0.2)}
+LOAD = _loads(0.2)
 LAYERS = {"layers: usual": _usual_layers}
 ROUNDED = {"stimulus: rounded": _rounded}
 ADVICE: dict[str, dict[str, Change]] = {
-    "smaller depth or force": {
-        f"load: {share:g} of it": partial(_loaded, share=share) for share in (0.5, 0.2, 0.04)
-    },
+    "smaller depth or force": _loads(0.5, 0.2, 0.04),
     "fillet": ROUNDED,
     "smoothing": {"stimulus: smoothed": _rounded},
     "smaller steps": STEPS,
@@ -108,7 +105,7 @@ HARD: dict[str, dict[str, Change]] = {
     "a true edge": ROUNDED,
     "as sharp as": ROUNDED,
     "corners or bumps": ROUNDED,
-    "friction": {"friction: none": _frictionless},
+    "friction": {"friction: none": partial(_with, friction=0.0)},
     "the law": {"law: neo-Hooke": partial(_layers, law="neo_hooke")},
     "small strain": {"strain: finite": _finite},
     "a stroke": {"motion: pressed only": _pressed_only},
