@@ -541,7 +541,7 @@ def test_a_batch_that_cannot_run_is_tried_three_times_and_named(tmp_path):
 def test_an_interrupt_ends_the_processes(tmp_path):
     layout = engine.lay_out(sweep_of({"friction": [0]}), tmp_path, cores=1)
 
-    def interrupt(*_):
+    def interrupt(**_):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

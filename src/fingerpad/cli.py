@@ -25,18 +25,24 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import TextColumn, TimeElapsedColumn
 
 from fingerpad.documents import SceneError, read_yaml
-from fingerpad.files import disk_is_full, is_file, locked, read_input, staged, unusable
+from fingerpad.files import InUse, disk_is_full, is_file, locked, read_input, staged, unusable
+from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.bounds import PlanError, percent
 from fingerpad.planning.plan import Plan, plan
+from fingerpad.processes import progress_bar
 from fingerpad.receptors.recovery import ReceptorError
+from fingerpad.results import summary, write_history, write_vtu
 from fingerpad.scenes.families import read_scene
 from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.simulation import simulate
+from fingerpad.specimen import mesh_for, quality_of, write_pad
 from fingerpad.specimen.outline import OutlineError
 from fingerpad.specimen.pad import MeshError
+from fingerpad.sweeps import command as sweeps
+from fingerpad.sweeps.engine import NotFinished
 from fingerpad.units import QuantityError, parse_quantity, unit_of
 
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -255,9 +261,7 @@ def _cores(text: str) -> int:
 
 def _plan(options: argparse.Namespace) -> None:
     if _is_sweep(options.scene):
-        from fingerpad.sweeps import command
-
-        command.plan(options.scene, options.accuracy, options.cores, options.json)
+        sweeps.plan(options.scene, options.accuracy, options.cores, options.json)
         return
     scene, chosen = _prepare(options)
     if options.json:
@@ -271,11 +275,6 @@ def _run(options: argparse.Namespace) -> int:
     _check_writable(out, directory=True)
     scene, chosen = _prepare(options)
     unit = _force_unit(options.scene)
-
-    # these compile kernels: a plan does not need them
-    from fingerpad.mechanics.stepping import NonConvergence
-    from fingerpad.results import summary, write_history, write_vtu
-    from fingerpad.simulation import simulate
 
     with _folder(out, scene, chosen, options) as folder:
         _check_room(out, chosen.result_bytes(scene, options.vtu))
@@ -308,21 +307,16 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _sweep(options: argparse.Namespace) -> int:
-    from fingerpad.sweeps import command
-    from fingerpad.sweeps.engine import NotFinished
-
     if options.out:
         _check_writable(options.out, directory=True)
     try:
-        command.sweep(options)
+        sweeps.sweep(options)
     except NotFinished as error:
         return _say(str(error), NOT_COMPLETED)
     return DONE
 
 
 def _mesh(options: argparse.Namespace) -> None:
-    from fingerpad.specimen import mesh_for, quality_of, write_pad
-
     if options.out.suffix != ".msh":
         raise _Refusal(f"--out: '{options.out}' is not a mesh file; allowed: a name ending in .msh")
     _check_writable(options.out, directory=False)
@@ -442,18 +436,16 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
     """The folder of the results, held for this process alone; refused if it holds what is not this
     scene's.
     """
-    with _directory(path), contextlib.ExitStack() as held:
-        try:
-            held.enter_context(locked(path))
-        except BlockingIOError:
-            allowed = "another folder, or later"
-            raise _Refusal(
-                f"--out: '{path}' is being written by another run; allowed: {allowed}"
-            ) from None
-        patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
-        folder = _Folder(path, scene.name, plan.to_dict(), patterns)
-        folder.check()
-        yield folder
+    patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
+    try:
+        with _directory(path), locked(path):
+            folder = _Folder(path, scene.name, plan.to_dict(), patterns)
+            folder.check()
+            yield folder
+    except InUse:
+        raise _Refusal(
+            f"--out: '{path}' is being written by another run; allowed: another folder, or later"
+        ) from None
 
 
 class _Folder:
@@ -562,8 +554,6 @@ class _Folder:
         return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
 
     def _last_converged(self, dataset: Any, keeping: bool = False) -> None:
-        from fingerpad.results import write_history
-
         def last(stage: Path) -> None:
             if dataset is not None:
                 write_history(dataset, stage / "last_converged.nc")
@@ -593,42 +583,25 @@ def _say(message: str, code: int) -> int:
 
 
 def _print_plan(scene: Scene, plan: Plan) -> None:
-    from rich.console import Console
-
     Console(highlight=False).print(plan.shown(f"Plan of {scene.name}"), crop=False)
 
 
 @contextlib.contextmanager
 def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], None] | None]:
-    """A progress bar on a terminal's standard error, as a function to call after each step; else
-    None.
-    """
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-
+    """A progress bar of a run, as a function to call after each step; else None."""
     columns = (
-        TextColumn(escape(name)),
-        BarColumn(),
         TextColumn("t = {task.completed:.3g} of {task.total:.3g} s"),
-        TextColumn("contact {task.fields[width]:.2f} mm"),
+        TextColumn("contact {task.fields[contact_width_mm]:.2f} mm"),
         TextColumn("{task.fields[iterations]} iterations, {task.fields[cutbacks]} cuts"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(name, total=1.0, width=0.0, iterations=0, cutbacks=0)
+    start = {"contact_width_mm": 0.0, "iterations": 0, "cutbacks": 0}
+    with progress_bar(name, quiet, *columns, total=1.0, **start) as show:
 
-        def show(state: dict[str, Any]) -> None:
-            progress.update(
-                task,
-                completed=state["time_s"],
-                total=state["end_time_s"],
-                width=state["contact_width_mm"],
-                iterations=state["iterations"],
-                cutbacks=state["cutbacks"],
-            )
+        def after_step(state: dict[str, Any]) -> None:
+            show(completed=state["time_s"], total=state["end_time_s"], **state)
 
-        yield show
+        yield show and after_step
 
 
 def _force_unit(path: Path) -> str:

@@ -143,6 +143,10 @@ def write_text(path: str | Path, text: str) -> None:
     write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8"))
 
 
+class InUse(BlockingIOError):
+    """Another process writes into a directory."""
+
+
 @contextlib.contextmanager
 def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
     """Lock a directory for this process; the lock ends with the process and leaves no file.
@@ -155,16 +159,16 @@ def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
     Raises
     ------
     BlockingIOError
-        Another process holds it.
+        Another process holds it (`InUse`).
     """
     handle = os.open(directory, os.O_RDONLY)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            if isinstance(error, BlockingIOError):
-                raise
-        # another error comes from a file system without locks
+        except BlockingIOError:
+            raise InUse(f"'{directory}' is being written by another process") from None
+        except OSError:
+            pass  # of a file system without locks
         yield (handle,)
     finally:
         os.close(handle)

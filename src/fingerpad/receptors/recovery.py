@@ -3,9 +3,9 @@ an element's strain is best.
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.spatial import KDTree
 
 from fingerpad.specimen.element_kinds import KINDS
@@ -38,27 +38,6 @@ class Location:
 
     element: np.ndarray
     xi: np.ndarray
-
-
-@dataclass(frozen=True)
-class Sums:
-    """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
-
-    Attributes
-    ----------
-    weights, index
-        (m,) of all rows after each other, and of which sample.
-    starts
-        (nr,) where each row begins.
-    """
-
-    weights: np.ndarray
-    index: np.ndarray
-    starts: np.ndarray
-
-    def __call__(self, values: np.ndarray) -> np.ndarray:
-        """Sums (nr, ...) of values (samples, ...)."""
-        return np.add.reduceat((self.weights * values[self.index].T).T, self.starts, axis=0)
 
 
 def containing(space, points, tolerance=1e-6):
@@ -150,8 +129,8 @@ def _mean_of_neighbours(space, layers, points):
 
 
 def recovery(space, layers, points, mirrored):
-    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at
-    points; None: samples are values.
+    """Where to sample (:class:`Location`), and the matrix (nr, samples) that makes values at points
+    of samples; None: samples are values.
 
     Strain is right to a power of the edges more at some points of an element: in the middle of a
     linear quad, at the 2 x 2 Gauss points of a quadratic one (Barlow 1976); a triangle's quadrature
@@ -179,44 +158,38 @@ def recovery(space, layers, points, mirrored):
     if not len(points):
         return Location(np.zeros(0, int), np.zeros((0, 2))), None
     found, owner, share = _mean_of_neighbours(space, layers, points)
-    fits = (
-        _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
-    )
-    if not fits and len(owner) == len(points):
+    best, degree = FITTED.get(space.element.name, (np.zeros((1, 2)), None))
+    row, sample, weight = _fits(space, layers, points, owner, found, mirrored, best, degree)
+    if not len(row) and len(owner) == len(points):
         return found, None
-    plain = ~np.isin(owner, list(fits))
-    rule = FITTED[space.element.name][0] if fits else np.zeros((1, 2))
-    used = np.unique(np.concatenate([sample for sample, _ in fits.values()] or [np.zeros(0, int)]))
+    plain = ~np.isin(owner, row)
+    used, column = np.unique(sample, return_inverse=True)
+    element, of_best = np.divmod(used, len(best))
     location = Location(
-        np.concatenate([used // len(rule), found.element[plain]]),
-        np.concatenate([rule[used % len(rule)], found.xi[plain]]),
+        np.append(element, found.element[plain]), np.concatenate([best[of_best], found.xi[plain]])
     )
-    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [
-        len(used) + np.arange(np.count_nonzero(plain))
-    ]
-    weights = [weight for _, weight in fits.values()] + [share[plain]]
-    whose = [np.full(len(sample), k) for k, (sample, _) in fits.items()] + [owner[plain]]
-    index, weights, whose = (np.concatenate(each) for each in (index, weights, whose))
-    order = np.argsort(whose, kind="stable")
-    return location, Sums(
-        weights[order], index[order], np.unique(whose[order], return_index=True)[1]
-    )
+    column = np.append(column, len(used) + np.arange(np.count_nonzero(plain)))
+    places = np.append(row, owner[plain]), column
+    return location, csr_array((np.append(weight, share[plain]), places))
 
 
-def _fits(space, layers, points, owner, found, mirrored):
-    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points
-    where a fit is good.
+def _fits(space, layers, points, owner, found, mirrored, best, degree):
+    """Point, sample and weight (m,) of all that is summed for points where a fit is good; samples
+    are numbered element by element.
 
     Parameters
     ----------
     owner, found
         Of :func:`_mean_of_neighbours`.
+    best, degree
+        Of :data:`FITTED`; the degree is None where nothing is fitted.
     """
+    fits = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
+    if degree is None:
+        return fits[0]
     nodes = space.points[space.cells[found.element]]
     inverse = np.linalg.inv(np.einsum("nai,naj->nij", space.element.shape(found.xi)[1], nodes))
-    best, degree = FITTED[space.element.name]
     values = space.element.shape(best)[0]
-    fits = {}
     for k, (own, elements) in enumerate(_patches(space, layers, owner, found.element)):
         place = np.einsum("qa,eai->eqi", values, space.points[space.cells[elements]]).reshape(-1, 2)
         sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
@@ -230,9 +203,9 @@ def _fits(space, layers, points, owner, found, mirrored):
             on = square < radius**2
             weights = _fitted(away[0, on] / radius, 1 - square[on] / radius**2, degree)
             if weights is not None:
-                fits[k] = sample[on], weights
+                fits.append((np.full(len(weights), k), sample[on], weights))
                 break
-    return fits
+    return [np.concatenate(parts) for parts in zip(*fits, strict=True)]
 
 
 def _fitted(at, weight, degree):
@@ -257,16 +230,12 @@ def _patches(space, layers, owner, element):
     with these, or the next.
     """
     corners = space.cells[:, : 3 if space.element.triangle else 4]
-    order = np.argsort(corners.ravel(), kind="stable")
-    ends = np.searchsorted(corners.ravel()[order], np.arange(len(space.points) + 1))
-    owners = order // corners.shape[1]
-
-    @cache
-    def around(elements):
-        near = np.concatenate(
-            [owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])]
-        )
-        return tuple(np.unique(near[layers[near] == layers[elements[0]]]))
-
+    number = np.repeat(np.arange(len(corners)), corners.shape[1])
+    has_node = csr_array((np.ones(corners.size), (number, corners.ravel())))
+    neighbours = has_node @ has_node.T
     for own in np.split(np.arange(len(owner)), np.flatnonzero(np.diff(owner)) + 1):
-        yield own, np.array(around(around(tuple(element[own]))))
+        near = element[own]
+        for _ in range(2):
+            around = np.unique(neighbours[near].indices)
+            near = around[layers[around] == layers[near[0]]]
+        yield own, near

@@ -60,7 +60,7 @@ class Forecast:
         return max(sum(costs) / cores, max(costs))
 
 
-def forecast(design: Design, progress: Callable[[int], object] | None = None) -> Forecast:
+def forecast(design: Design, progress: Callable[..., object] | None = None) -> Forecast:
     """Plan every scene.
 
     Parameters
@@ -68,7 +68,7 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
     design : Design
         The scenes.
     progress : callable, optional
-        Called with the number of scenes that are planned.
+        Called with ``completed``, the number of scenes that are planned.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
         total.effects.update(name for name, effect in chosen.effects.items() if effect.on)
         total.worst_error = max(total.worst_error, chosen.estimated_error)
         if progress:
-            progress(number + 1)
+            progress(completed=number + 1)
     return total
 
 
