@@ -452,17 +452,8 @@ def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
     Pa at n times.
     """
     whole, body, indenter = data.copy(), mesh(), np.zeros((len(times), 2, 2))
-    add_snapshots(
-        whole,
-        times,
-        body.points,
-        body.cells,
-        body.region,
-        displacement,
-        pressure,
-        body.regions,
-        indenter,
-    )
+    fields = {"displacement": displacement, "pressure": pressure, "indenter": indenter}
+    add_snapshots(whole, times, body, fields)
     return whole
 
 

@@ -27,6 +27,24 @@ copy (setup.py).
 """
 
 SCRATCH = ".fingerpad-"
+
+
+class WrongInput(ValueError):
+    """Something that a person wrote is wrong.
+
+    Attributes
+    ----------
+    problem : str
+        What is wrong, written to follow what it is about.
+    allowed : str
+        What would be right.
+    """
+
+    def __init__(self, problem: str, allowed: str) -> None:
+        super().__init__(f"{problem}; allowed: {allowed}")
+        self.problem, self.allowed = problem, allowed
+
+
 MOST_BYTES = {"text": 1 << 20, "table": 1 << 25, "mesh": 1 << 28}
 """Of a file that somebody brings: a scene or a sweep, a profile or a table of measured data, a
 mesh.

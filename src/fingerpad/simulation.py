@@ -648,23 +648,13 @@ class Simulation:
             f"states of a leg that takes no time stand {INSTANT:g} s apart"
         )
         if snapshots:
-            first, *_ = fields = list(snapshots.values())
-            found = {name: [field[name] for field in fields] for name in first}
-            add_snapshots(
-                history,
-                [history["time"].values[_last(out["leg"], times, *key)] for key in snapshots],
-                self.whole.points,
-                self.whole.cells,
-                self.whole.region,
-                np.array([unfold.nodes(u) for u in found.pop("displacement")]),
-                np.array([unfold.elements(p) for p in found.pop("pressure")]),
-                self.whole.regions,
-                np.array(found.pop("indenter")),
-                {
-                    name: np.array([unfold.elements(values, name) for values in each])
-                    for name, each in found.items()
-                },
-            )
+            first, *_ = found = list(snapshots.values())
+            fields = {
+                name: np.array([unfold.field(name, field[name]) for field in found])
+                for name in first
+            }
+            outputs = [_last(out["leg"], times, *key) for key in snapshots]
+            add_snapshots(history, history["time"].values[outputs], self.whole, fields)
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
             history = history.merge(respond(history, wanted))
@@ -705,36 +695,35 @@ class _Unfolding:
     """Values of the solved mesh on the whole mesh; the identity when the whole pad was solved."""
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
-        middle = whole.points[whole.cells].mean(1)
-        self.node, self.element = np.arange(len(whole.points)), np.arange(len(whole.cells))
-        self.left = solved.half & (whole.points[:, 0] < 0)
-        self._mirrored = solved.half & (middle[:, 0] < 0)
-        if solved.half:
-            self.node = _mirror_match(solved.points, whole.points)
-            self.element = _mirror_match(solved.points[solved.cells].mean(1), middle)
-        chain = skin_chain(whole)
-        position = np.full(len(solved.points), -1)
-        position[skin_nodes] = np.arange(len(skin_nodes))
-        self._skin, self._skin_left = position[self.node[chain]], self.left[chain]
+        places = [
+            (mesh.points, mesh.points[mesh.cells].mean(1), mesh.points[nodes])
+            for mesh, nodes in ((solved, skin_nodes), (whole, skin_chain(whole)))
+        ]
+        self._nodes, self._elements, self._skin = (
+            _mirror(*pair, solved.half) for pair in zip(*places, strict=True)
+        )
 
-    def nodes(self, field):
-        out = field[self.node].copy()
-        out[self.left, 0] *= -1
-        return out
-
-    def elements(self, values, name=""):
-        out = values[self.element]
-        if name == "cauchy_stress":  # the shear stress xy changes its sign in a mirror
-            out[self._mirrored, 2] *= -1
+    def field(self, name, values):
+        """A full field by its name; mirrored, x and the shear stress xy change their sign."""
+        if name == "indenter":
+            return values
+        index, mirrored = self._nodes if name == "displacement" else self._elements
+        out, odd = values[index], {"displacement": 0, "cauchy_stress": 2}
+        if name in odd:
+            out[mirrored, odd[name]] *= -1
         return out
 
     def skin(self, values, odd=False):
-        out = values[self._skin]
-        return np.where(self._skin_left, -out, out) if odd else out
+        index, mirrored = self._skin
+        out = values[index]
+        return np.where(mirrored, -out, out) if odd else out
 
 
-def _mirror_match(solved, whole):
+def _mirror(solved, whole, half):
+    """Which of the solved points (n, 2) each point of the whole pad is, and whether mirrored."""
+    if not half:
+        return np.arange(len(whole)), np.zeros(len(whole), bool)
     right, near = np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]), 1e-6 * np.ptp(whole[:, 0])
     distance, index = KDTree(solved).query(right)
     assert distance.max() <= near, "the half mesh is not half of the whole"
-    return index
+    return index, whole[:, 0] < 0

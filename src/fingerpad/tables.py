@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from fingerpad.files import read_input
+from fingerpad.files import WrongInput, read_input
 
 MOST_LINES = 500_000
 """Of a table."""
@@ -34,18 +34,11 @@ _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _WRITE_POINTS = "numbers such as 1234.5, with a decimal point and no other sign"
 
 
-class TableError(ValueError):
-    """A table cannot be read.
-
-    Attributes
-    ----------
-    problem : what is wrong, written to follow the name of the file.
-    allowed : what would be right.
-    """
+class TableError(WrongInput):
+    """A table cannot be read; ``problem`` follows the name of its file."""
 
     def __init__(self, problem: str, allowed: str = SAVE_AS) -> None:
-        super().__init__(f"{problem}; allowed: {allowed}")
-        self.problem, self.allowed = problem, allowed
+        super().__init__(problem, allowed)
 
 
 @dataclass(frozen=True)

@@ -539,26 +539,23 @@ class Read:
 
     @cached_property
     def names(self) -> dict[str, str]:
-        """Key -> name of the axis: the fewest last words of the key that no other key has."""
+        """Key -> name of the axis: its own, or the fewest last words of the key that tell it
+        apart.
+        """
         words = {k: k.replace("[", ".").replace("]", "").split(".") for k in self.sweep.over}
-        most = max(map(len, words.values()))
-        names = {}
-        for key, parts in words.items():
-            taken = [others for other, others in words.items() if other != key]
-            taken += [[name] for name in RESERVED]
-            # a bare number says nothing
-            counts = range(1, len(parts) + 1)
-            least = next((n for n in counts if not parts[-n].isdigit()), len(parts))
-            enough = next(
-                (
-                    n
-                    for n in range(least, most + 1)
-                    if all(others[-n:] != parts[-n:] for others in taken)
-                ),
-                most,
-            )
-            names[key] = self.sweep.over[key].name or "_".join(parts[-enough:])
-        return names
+        taken = [*words.values(), *([name] for name in RESERVED)]
+        axes = self.sweep.over.items()
+        return {key: axis.name or "_".join(_last(words[key], taken)) for key, axis in axes}
+
+
+def _last(words: list[str], taken: list[list[str]]) -> list[str]:
+    """The fewest last words that no other of ``taken`` has; a bare number says nothing."""
+    for count in range(1, len(words)):
+        last = words[-count:]
+        others = [other for other in taken if other is not words]
+        if not "".join(last).isdigit() and all(other[-count:] != last for other in others):
+            return last
+    return words
 
 
 def load_sweep(
