@@ -316,7 +316,7 @@ class Simulation:
         # one a leg and time: of the increments of a steady leg, all at one time, the last
         snapshots: dict[tuple[int, float], dict[str, np.ndarray]] = {}
         wanted = sorted(self.scene.outputs.snapshots)
-        total = self._nominal_end()
+        *_, last = schedule(self.scene, *self.plan.stepping)
         counts = {"iterations": 0, "cutbacks": 0}
         between = self.plan.between and Between(*self.plan.between)
 
@@ -341,7 +341,7 @@ class Simulation:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
                 width = 1e3 * self._width(record)
-                times = {"time_s": record.time, "end_time_s": total}
+                times = {"time_s": record.time, "end_time_s": last.time or 1.0}
                 progress(times | {"contact_width_mm": width} | counts)
 
         try:
@@ -369,17 +369,15 @@ class Simulation:
                 raise NonConvergence(before, f"an element turns inside out at {where}", FOLDED)
         return sampled
 
-    def _present(self):
-        return self.stepper.force / self.share, self.stepper.depth, self.stepper.touching_depth()
-
     def steps(self):
         """Steps of the motion with forces on the part of the pad that is solved."""
-        for step in schedule(self.scene, *self.plan.stepping, present=self._present):
-            yield step if step.force is None else replace(step, force=step.force * self.share)
+        stepper = self.stepper
 
-    def _nominal_end(self):
-        *_, last = schedule(self.scene, *self.plan.stepping)
-        return last.time or 1.0
+        def present():
+            return stepper.force / self.share, stepper.depth, stepper.touching_depth()
+
+        for step in schedule(self.scene, *self.plan.stepping, present=present):
+            yield step if step.force is None else replace(step, force=step.force * self.share)
 
     def _errors(self, records, width) -> dict[str, Any]:
         """The plan's error law at the contact that was found: of legs' ends, the worst of these,

@@ -20,6 +20,8 @@ FITTED = {
 """By element, the points of the reference cell that are sampled, and the degree of the polynomial
 fitted to what is there.
 """
+_BORDER = 1e-6
+"""Reference coordinates that a point may lie outside an element."""
 _RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
 """Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
 _MOST = 5.0
@@ -40,7 +42,7 @@ class Location:
     xi: np.ndarray
 
 
-def containing(space, points, tolerance=1e-6):
+def containing(space, points):
     """Every element that each physical point (n, 2), m, lies in, borders included.
 
     Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point
@@ -59,12 +61,11 @@ def containing(space, points, tolerance=1e-6):
     """
     centres = space.centres
     near = KDTree(centres).query(points, np.arange(1, min(24, len(centres)) + 1))[1]
-    parts = [_among(space, points, near, tolerance)]
-    for k in np.setdiff1d(
-        np.arange(len(points)), parts[0][0]
-    ):  # beside a row of many narrow elements a long one is farther off
+    parts = [_among(space, points, near)]
+    # beside a row of many narrow elements a long one is farther off
+    for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):
         every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
-        owner, element, xi = _among(space, points[[k]], every, tolerance)
+        owner, element, xi = _among(space, points[[k]], every)
         if not len(owner):
             x, y = points[k] * 1e3
             raise ReceptorError(
@@ -76,7 +77,7 @@ def containing(space, points, tolerance=1e-6):
     return owner[order], Location(element[order], xi[order])
 
 
-def _among(space, points, candidates, tolerance):
+def _among(space, points, candidates):
     """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,),
     reference coordinates (m, 2).
     """
@@ -88,8 +89,8 @@ def _among(space, points, candidates, tolerance):
     )
     element = candidates[owner, column]
     xi = _inverse_map(space.element, nodes[owner, column], points[owner])
-    inside = (xi >= -tolerance).all(1)
-    inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
+    most = xi.sum(1) if space.element.triangle else xi.max(1)
+    inside = (xi.min(1) >= -_BORDER) & (most <= 1 + _BORDER)
     return owner[inside], element[inside], xi[inside]
 
 
@@ -195,9 +196,8 @@ def _fits(space, layers, points, owner, found, mirrored, best, degree):
         sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
         if mirrored:
             place, sample = np.concatenate([place, place * [-1, 1]]), np.tile(sample, 2)
-        away = (place - points[k]) @ inverse[
-            own
-        ]  # in lengths of each of the elements that the point lies in
+        # in lengths of each of the elements that the point lies in
+        away = (place - points[k]) @ inverse[own]
         square = (away**2).sum(axis=2).mean(axis=0)
         for radius in _RADII:
             on = square < radius**2

@@ -46,10 +46,8 @@ def run_batch(todo: Path, records: Path) -> None:
                 continue
             history = records.parent.parent / "histories" / f"{key}.nc"
             if (deaths := _deaths(running).get(key, 0)) >= MOST_DEATHS:
-                cause = (
-                    f"its process was killed {deaths} times while it ran; is there memory enough?"
-                )
-                record = _failed(cause)
+                killed = f"its process was killed {deaths} times while it ran"
+                record = _failed(f"{killed}; is there memory enough?")
             else:
                 with _noted(running, key):
                     record = _record(base, changes, batch, history)
@@ -127,16 +125,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
         "iterations": int(history.newton_iterations.sum()),
         "cpu_s": cost["cpu_s"],
         "wall_s": cost["wall_s"],
-        "memory_MB": _resident_MB(),
     }
-
-
-def _resident_MB() -> float:
-    """Memory of the process, MB; 0 where the system does not say."""
-    try:
-        return round(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6, 1)
-    except (OSError, ValueError):
-        return 0.0
 
 
 def _deaths(running: Path) -> dict[str, int]:
