@@ -28,7 +28,16 @@ from rich.console import Console
 from rich.progress import TextColumn, TimeElapsedColumn
 
 from fingerpad.documents import SceneError, read_yaml
-from fingerpad.files import InUse, disk_is_full, is_file, locked, read_input, staged, unusable
+from fingerpad.files import (
+    InUse,
+    disk_is_full,
+    files_below,
+    is_file,
+    locked,
+    read_input,
+    staged,
+    unusable,
+)
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.bounds import PlanError, percent
 from fingerpad.planning.plan import Plan, plan
@@ -172,81 +181,50 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="fingerpad", description="Simulate touch on a human fingerpad."
     )
-    parser.add_argument(
-        "--version",
-        action="version",
-        version=f"fingerpad {version('fingerpad')}",
-        help="show the version and exit",
-    )
+    said = f"fingerpad {version('fingerpad')}"
+    shown = "show the version and exit"
+    parser.add_argument("--version", action="version", version=said, help=shown)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    plan = commands.add_parser(
-        "plan", help="say what would be simulated, why, and what it would cost"
-    )
-    plan.add_argument("--json", action="store_true", help="print plan.json instead of a table")
-    plan.add_argument(
-        "--cores", metavar="N", type=_cores, default=1, help="of a sweep: how many would run it"
-    )
-    plan.set_defaults(command=_plan)
+    def command(name: str, does: Callable, described: str) -> Callable[..., Any]:
+        """A command; the function that adds an option to it."""
+        added = commands.add_parser(name, help=described)
+        added.set_defaults(command=does)
+        return added.add_argument
 
-    run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
-    run.add_argument(
-        "--out", metavar="DIR", type=Path, help="where the results go (default: results/SCENE)"
+    plan = command("plan", _plan, "say what would be simulated, why, and what it would cost")
+    run = command("run", _run, "simulate a scene: history.nc, summary.json, plan.json")
+    mesh = command("mesh", _mesh, "write the mesh a scene would be simulated on")
+    sweep = command(
+        "sweep",
+        _sweep,
+        "simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing",
     )
-    run.add_argument(
-        "--force", action="store_true", help="replace what is in DIR under the names of the results"
-    )
-    run.add_argument(
-        "--vtu",
-        action="store_true",
-        help="also write fields for ParaView, in DIR/vtu: snapshots, or the last state",
-    )
-    run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
-    run.set_defaults(command=_run)
-
-    mesh = commands.add_parser("mesh", help="write the mesh a scene would be simulated on")
-    mesh.add_argument(
-        "--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm"
-    )
-    mesh.set_defaults(command=_mesh)
-
-    sweep = commands.add_parser(
-        "sweep", help="simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing"
-    )
-    sweep.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help="where the results go (default: results/sweeps/SWEEP)",
-    )
-    sweep.add_argument(
-        "--cores", metavar="N", type=_cores, default=1, help="processes at a time (default: 1)"
-    )
-    sweep.add_argument(
-        "--profile",
-        metavar="DIR",
-        help="a Snakemake profile instead of --cores, as workflow/profiles/slurm",
-    )
-    sweep.add_argument(
-        "--again",
-        action="store_true",
-        help="also try scenes again that could not be simulated before",
-    )
-    sweep.add_argument("--force", action="store_true", help="use DIR though it holds another sweep")
-    sweep.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
-    sweep.add_argument("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
-    sweep.set_defaults(command=_sweep)
-
-    for command in (plan, run, mesh):
-        command.add_argument(
-            "scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan"
-        )
-    for command in (plan, run, mesh, sweep):
-        command.add_argument(
-            "--accuracy",
-            metavar="X",
-            help="draft, thesis, fine or a tolerance; replaces what the scene states",
-        )
+    is_set: dict[str, Any] = {"action": "store_true"}
+    folder: dict[str, Any] = {"metavar": "DIR", "type": Path}
+    count: dict[str, Any] = {"metavar": "N", "type": _cores, "default": 1}
+    plan("--json", **is_set, help="print plan.json instead of a table")
+    plan("--cores", **count, help="of a sweep: how many would run it")
+    run("--out", **folder, help="where the results go (default: results/SCENE)")
+    sweep("--out", **folder, help="where the results go (default: results/sweeps/SWEEP)")
+    run("--force", **is_set, help="replace what is in DIR under the names of the results")
+    sweep("--force", **is_set, help="use DIR though it holds another sweep")
+    fields = "also write fields for ParaView, in DIR/vtu: snapshots, or the last state"
+    run("--vtu", **is_set, help=fields)
+    mesh_file = "mesh file, coordinates in mm"
+    mesh("--out", metavar="FILE.msh", type=Path, required=True, help=mesh_file)
+    sweep("--cores", **count, help="processes at a time (default: 1)")
+    cluster = "a Snakemake profile instead of --cores, as workflow/profiles/slurm"
+    sweep("--profile", metavar="DIR", help=cluster)
+    sweep("--again", **is_set, help="also try scenes again that could not be simulated before")
+    for option in (run, sweep):
+        option("--quiet", **is_set, help="no progress bar, no closing line")
+    for option in (plan, run, mesh):
+        option("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
+    sweep("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
+    levels = "draft, thesis, fine or a tolerance; replaces what the scene states"
+    for option in (plan, run, mesh, sweep):
+        option("--accuracy", metavar="X", help=levels)
     return parser
 
 
@@ -486,31 +464,24 @@ class _Folder:
         or come beside them when ``keeping``. Where they cannot be written here, they go to a
         temporary place, which the error names.
         """
+        kept = self.files if keeping else []
         try:
             with _unwritable(self.path):
                 if foreign := self._foreign():  # since the run began
                     raise FileExistsError(
                         errno.EEXIST, f"'{foreign[0].name}' has come into it meanwhile"
                     )
-                self._replace(fill, keeping)
+                with staged(self.path, "plan.json", () if keeping else self.files) as stage:
+                    fill(stage)
+                    self._describe(stage, kept)
         except _NotWritten as reason:
             raise _NotWritten(f"{reason}; {self._elsewhere(fill)}") from None
 
-    def _replace(self, fill: Callable[[Path], None], keeping: bool) -> None:
-        with staged(self.path, "plan.json", () if keeping else self.files) as stage:
-            fill(stage)
-            self._describe(stage, self.files if keeping else [])
-
     def _describe(self, stage: Path, kept: Iterable[str] = ()) -> None:
         """Writes plan.json, which names the files that there are."""
-        written = {
-            item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()
-        }
-        files = sorted({*kept, *written, "plan.json"})
-        _write_json(
-            {**(self.before if kept else self.plan), "scene": self.scene, "files": files},
-            stage / "plan.json",
-        )
+        files = sorted({*kept, *files_below(stage), "plan.json"})
+        plan = self.before if kept else self.plan
+        _write_json(plan | {"scene": self.scene, "files": files}, stage / "plan.json")
 
     def _elsewhere(self, fill: Callable[[Path], None]) -> str:
         """Writes the results to a temporary place instead, and says where; or that they are

@@ -192,6 +192,11 @@ def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
         os.close(handle)
 
 
+def files_below(folder: Path) -> set[str]:
+    """Relative names (with "/") of all files below a folder."""
+    return {file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()}
+
+
 @contextlib.contextmanager
 def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> Iterator[Path]:
     """A scratch folder whose files appear in ``directory`` only when all of them were written.
@@ -222,14 +227,9 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
     try:
         (stage / "new").mkdir()
         yield stage / "new"
-        written = {
-            item.relative_to(stage / "new").as_posix()
-            for item in (stage / "new").rglob("*")
-            if item.is_file()
-        }
-        names = sorted(written, key=lambda name: (name != first, name)) + sorted(
-            set(removing) - written
-        )
+        written = files_below(stage / "new")
+        names = sorted(written, key=lambda name: (name != first, name))
+        names += sorted(set(removing) - written)
         for parent in {(directory / name).parent for name in names} - {directory}:
             if parent.is_symlink():  # what it leads to is not ours
                 raise OSError(errno.ELOOP, f"'{parent.name}' is a link to another folder")

@@ -119,14 +119,12 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
     """Text of a file, and what is unusual about its encoding."""
     if content.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
         raise TableError("is a spreadsheet, not text")
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    encoding = "utf-8-sig"
+    for name, high_bytes in (("utf-16-le", content[1:400:2]), ("utf-16-be", content[:400:2])):
+        if len(content) > 3 and high_bytes.count(0) > len(high_bytes) / 2:
+            encoding = name
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):  # it says so itself
         encoding = "utf-16"
-    elif len(content) > 3 and content[1:400:2].count(0) > len(content[1:400:2]) / 2:
-        encoding = "utf-16-le"
-    elif len(content) > 3 and content[:400:2].count(0) > len(content[:400:2]) / 2:
-        encoding = "utf-16-be"
-    else:
-        encoding = "utf-8-sig"
     try:
         text, notes = content.decode(encoding), []
     except UnicodeDecodeError as error:

@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
@@ -137,10 +137,8 @@ class Axis(Strict):
     name: str | None = None
     """What it is called in the results; left out, the last words of its key."""
 
-    @property
-    def drawn(self) -> bool:
-        """Whether its values are drawn, not listed."""
-        return False
+    drawn: ClassVar[bool] = False
+    """Whether its values are drawn, not listed."""
 
     @property
     def unit(self) -> Unit | None:
@@ -287,6 +285,7 @@ class LogNormal(Strict):
 class Distribution(Axis):
     """A distribution from which values are drawn; exactly one of uniform, normal, lognormal."""
 
+    drawn: ClassVar[bool] = True
     uniform: Pair | None = None
     """Lower and upper end."""
     normal: Normal | None = None
@@ -297,10 +296,6 @@ class Distribution(Axis):
     """Ends at which the distribution is truncated."""
     source: str | None = None
     """Where the distribution is from."""
-
-    @property
-    def drawn(self):
-        return True
 
     @property
     def unit(self):
