@@ -193,15 +193,15 @@ def add_snapshots(
     """
     of_elements, position = ("snapshot", "element"), "undeformed node position"
     layers = ", ".join(f"{number} {name}" for number, name in enumerate(mesh.regions))
-    known = {
+    known: dict[str, tuple[tuple[str, ...], str, str]] = {
         "displacement": (("snapshot", "node", "axis"), "m", "displacement"),
         "pressure": (of_elements, "Pa", "mean stress kappa (J - 1), element mean"),
         "indenter": (("snapshot", "outline_point", "axis"), "m", "outline of the stimulus"),
     }
     for name, (unit, _, _, long_name) in FIELDS.items():
-        dims = (*of_elements, f"component_of_{name}")
-        known[name] = dims, unit, f"{long_name}, middle of the element"
-    new = {
+        of_field = (*of_elements, f"component_of_{name}")
+        known[name] = of_field, unit, f"{long_name}, middle of the element"
+    new: dict[str, tuple] = {
         "snapshot_time": ("snapshot", "s", "time of the full field", np.asarray(times, float)),
         "node_position": (("node", "axis"), "m", position, mesh.points),
         "element_nodes": (("element", "element_node"), "1", "nodes of each element", mesh.cells),

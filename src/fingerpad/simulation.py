@@ -693,13 +693,11 @@ class _Unfolding:
     """Values of the solved mesh on the whole mesh; the identity when the whole pad was solved."""
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
-        places = [
-            (mesh.points, mesh.points[mesh.cells].mean(1), mesh.points[nodes])
-            for mesh, nodes in ((solved, skin_nodes), (whole, skin_chain(whole)))
-        ]
-        self._nodes, self._elements, self._skin = (
-            _mirror(*pair, solved.half) for pair in zip(*places, strict=True)
-        )
+        middle = solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1)
+        skin = solved.points[skin_nodes], whole.points[skin_chain(whole)]
+        self._nodes = _mirror(solved.points, whole.points, solved.half)
+        self._elements = _mirror(*middle, solved.half)
+        self._skin = _mirror(*skin, solved.half)
 
     def field(self, name, values):
         """A full field by its name; mirrored, x and the shear stress xy change their sign."""

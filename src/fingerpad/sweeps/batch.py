@@ -125,7 +125,16 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
         "iterations": int(history.newton_iterations.sum()),
         "cpu_s": cost["cpu_s"],
         "wall_s": cost["wall_s"],
+        "memory_MB": _resident_MB(),
     }
+
+
+def _resident_MB() -> float:
+    """Memory of the process, MB; 0 where the system does not say."""
+    try:
+        return round(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6, 1)
+    except (OSError, ValueError):
+        return 0.0
 
 
 def _deaths(running: Path) -> dict[str, int]:
