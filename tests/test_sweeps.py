@@ -62,7 +62,7 @@ WRONG = [
     ({"stimulus.curvatur": ["1 1/m"]}, {}, "curvatur: is not a known key, the nearest is"),
     ({"friction": {"unifrom": [0, 1]}}, {}, "over.friction.unifrom: is not a known key"),
     ({"friction": {"uniform": [1, 0]}}, {}, "over.friction.uniform: [1, 0] is not rising"),
-    ({"friction": {"name": "mu"}}, {}, "over.friction: {'name': 'mu'} does not say one thing"),
+    ({"friction": {"name": "mu"}}, {}, "over.friction: {'name': 'mu'} is not exactly one kind"),
     ({"friction": {"uniform": [0, 1], "count": 3}}, {}, "over.friction.count: is not a known key"),
     ({FORCE: ["1 gf", "2 mm"]}, {}, "'2 mm' has the wrong dimension"),
     ({FORCE: {"range": ["1 mm", "2 mm"], "count": 2}}, {}, "'1.0 mm' has the wrong dimension"),

@@ -471,17 +471,18 @@ class Simulation:
         least = min(record.smallest_jacobian for record in records)
         if self.plan.timed and missing > MAX_ENERGY_WARNING:
             off = f"the energy found is off the work that was done by up to {missing:.1%}"
-            yield f"{off}: more steps or a finer mesh will tell"
+            yield f"{off}: repeat with more steps or a finer mesh to check"
         if least < MIN_DET_F_WARNING and not self.body.geometrically_linear:
             volume = f"an element keeps {least:.1%} of its volume at one point"
-            yield f"{volume}: a finer mesh, or a fillet, will tell"
+            yield f"{volume}: repeat with a finer mesh, or a fillet, to check"
         uneven = np.nanmax([0.0, *(checkerboard(*pair) for pair in pressures)])
         if uneven > MAX_UNEVEN_WARNING and not any(self.unbounded):
             share = f"{uneven:.0%} of its peak (r.m.s.)"
-            yield f"pressure goes up and down from node to node, by {share}: a finer mesh will tell"
+            uneven_by = f"pressure goes up and down from node to node, by {share}"
+            yield f"{uneven_by}: repeat with a finer mesh to check"
         if self.stepper.wavered:
             near = "states near to one another may be in equilibrium"
-            yield f"{near}, and round-off choose between them: smaller steps will tell"
+            yield f"{near}, and round-off choose between them: repeat with smaller steps to check"
 
     def _notes(self, records, pressures):
         """What a person should know of the states that were found, and of the contact with a

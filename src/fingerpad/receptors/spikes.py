@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 VARIATION = 0.25
 """Coefficient of variation of the intervals at a steady rate: assumed, the thesis states none.
@@ -25,8 +26,7 @@ def integrated(time, rate) -> np.ndarray:
     """Integral (n,) of a rate (n,) from the first time (n,) s on; the rate is linear in between, a
     repeated time is a jump.
     """
-    time, rate = np.asarray(time, float), np.asarray(rate, float)
-    return np.concatenate([[0.0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
+    return cumulative_trapezoid(rate, time, initial=0.0)
 
 
 def impulses(

@@ -60,15 +60,16 @@ def plan(path: Path, accuracy: str | None, cores: int, as_json: bool) -> None:
     design.check()
     with progress_bar("planning", as_json, *PLANNING, total=len(design)) as show:
         cost = forecast(design, show)
+    scenes = cost.scenes
     content = {
         "sweep": design.read.name,
         "scenes": len(design),
         "dimensions": design.dimensions,
         "effects": dict(cost.effects),
-        "nodes": [min(cost.nodes), max(cost.nodes)],
-        "largest_expected_error": cost.worst_error,
-        "predicted_cost_s": round(sum(cost.cost_s), 1),
-        "predicted_memory_MB": round(max(cost.memory_MB)),
+        "nodes": [int(scenes.nodes.min()), int(scenes.nodes.max())],
+        "largest_expected_error": float(scenes.error.max()),
+        "predicted_cost_s": round(float(scenes.cost_s.sum()), 1),
+        "predicted_memory_MB": round(scenes.memory_MB.max()),
         "cores": cores,
         "predicted_wall_s": round(cost.wall_s(cores), 1),
     }

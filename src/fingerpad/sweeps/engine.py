@@ -158,11 +158,11 @@ def lay_out(
     if before and not again and (before.name, before.digest) == (read.name, digest):
         if all((folder / name).exists() for name in before.known):
             return before
-    expected = forecast(design, progress)
+    expected = forecast(design, progress).scenes
     known = _known_records(folder, again)
     first = {key: number for number, key in reversed(list(enumerate(keys)))}
     missing = sorted(number for key, number in first.items() if key not in known)
-    needed = sum(expected.result_bytes[n] for n in missing)
+    needed = expected.result_bytes[missing].sum()
     if folder.is_dir() and disk_is_full(folder, needed):
         raise SweepError(
             f"--out: '{folder}' has no room for about {needed / 1e6:.2g} MB of results; "
@@ -172,12 +172,12 @@ def lay_out(
     if read.base.specimen.mesh is not None:  # batches run in other folders
         base["specimen"]["mesh"] = str(read.base.specimen.mesh.absolute())
     batches = {}
-    for numbers in divided(missing, expected.cost_s, cores):
+    for numbers in divided(missing, expected.cost_s.tolist(), cores):
         name = _digest([keys[n] for n in numbers] + [again])[:12]
         batches[name] = {
             "scenes": len(numbers),
-            "cost_s": round(sum(expected.cost_s[n] for n in numbers), 3),
-            "memory_MB": round(max(expected.memory_MB[n] for n in numbers)),
+            "cost_s": round(float(expected.cost_s[numbers].sum()), 3),
+            "memory_MB": round(expected.memory_MB[numbers].max()),
         }
         scenes = [[n, keys[n], design.changes(n)] for n in numbers]
         batch = {"base": base, "keep": list(keep), "histories": histories, "scenes": scenes}

@@ -378,7 +378,7 @@ def _axis(value: Any, info: ValidationInfo) -> Axis:
             if key not in fields:
                 what = f"is not a known key{nearest(key, fields)}"
                 raise Problem(what, allowed, (str(key)[:60],), HIDE)
-        raise Problem("does not say one thing", allowed, value=value)
+        raise Problem("is not exactly one kind of axis", allowed, value=value)
     if kinds == ["folder"] and isinstance(value["folder"], str) and info.context is not None:
         value = {**value, "folder": info.context.parent / expanded(value["folder"])}
     axis = KINDS[kinds[0]].model_validate(value, context=info.context)
