@@ -40,10 +40,10 @@ def progress_bar(
     if quiet or not sys.stderr.isatty():
         yield None
         return
-    columns = (TextColumn(escape(name)), BarColumn(), *columns)
+    columns = (TextColumn("{task.description}"), BarColumn(), *columns)
     console = Console(stderr=True)
     with Progress(*columns, console=console, transient=True, speed_estimate_period=120) as progress:
-        yield partial(progress.update, progress.add_task(name, total=total, **fields))
+        yield partial(progress.update, progress.add_task(escape(name), total=total, **fields))
 
 
 def threads() -> int:
