@@ -350,8 +350,8 @@ def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
     Pa at n times.
     """
     whole, body, indenter = data.copy(), mesh(), np.zeros((len(times), 2, 2))
-    fields = displacement, pressure, body.regions, indenter
-    add_snapshots(whole, times, body.points, body.cells, body.region, *fields)
+    fields = {"displacement": displacement, "pressure": pressure, "indenter": indenter}
+    add_snapshots(whole, times, body, fields)
     return whole
 
 

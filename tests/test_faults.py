@@ -20,6 +20,7 @@ import pytest
 
 import fingerpad
 from faults import ERRORS, Faults, files, in_child, results
+from fingerpad import cli
 from fingerpad.cli import main
 from fingerpad.files import read_input, staged, write_atomically, write_text
 from wrong_scenes import changed, write
@@ -33,13 +34,11 @@ COARSE = {"skin_edge": "0.8 mm", "steps": 2}
 @pytest.fixture(scope="module")
 def histories():
     """Two results of one scene that differ: what was there, and what comes."""
-    from fingerpad.simulation import simulate
-
     scenes = [
         changed(motion=[{"press_to_force": force, "rate": "40 gf/s"}], accuracy=COARSE)
         for force in ("5 gf", "10 gf")
     ]
-    return [simulate(fingerpad.load_scene(scene), fields=True) for scene in scenes]
+    return [fingerpad.simulate(scene, fields=True) for scene in scenes]
 
 
 @pytest.fixture
@@ -47,13 +46,11 @@ def run(tmp_path, histories, monkeypatch):
     """`run()` runs the command with the solver replaced by the result that comes; what was there is
     there already.
     """
-    import fingerpad.simulation
-
     scene, out = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "out"
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "elsewhere"))
     (tmp_path / "elsewhere").mkdir()
     result = types.SimpleNamespace(comes=histories[0])
-    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: result.comes)
+    monkeypatch.setattr(cli, "simulate", lambda *_, **__: result.comes)
 
     def run(*options):
         return main(["run", str(scene), "--out", str(out), "--quiet", "--vtu", *options])
@@ -159,7 +156,7 @@ def test_a_file_that_appears_while_a_run_goes_on_stays(run, capsys, monkeypatch)
         (run.out / "history.nc").write_text("somebody else's")
         return run.result.comes
 
-    monkeypatch.setattr(fingerpad.simulation, "simulate", solve)
+    monkeypatch.setattr(cli, "simulate", solve)
     assert run() == 3
     err = capsys.readouterr().err
     assert "'history.nc' has come into it meanwhile" in err and err.count("\n") == 1
@@ -168,7 +165,7 @@ def test_a_file_that_appears_while_a_run_goes_on_stays(run, capsys, monkeypatch)
 
 
 def test_a_folder_without_room_is_refused_before_anything_is_solved(run, capsys, monkeypatch):
-    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: pytest.fail("solved"))
+    monkeypatch.setattr(cli, "simulate", lambda *_, **__: pytest.fail("solved"))
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=1e5))
     run.restore()
     assert run() == 2
@@ -350,13 +347,13 @@ def test_a_full_and_a_read_only_disk(disk, run, tmp_path, capsys, monkeypatch):
         (disk / "filler").write_bytes(bytes(shutil.disk_usage(disk).free - 40_000))
         return run.result.comes
 
-    monkeypatch.setattr(fingerpad.simulation, "simulate", solve)
+    monkeypatch.setattr(cli, "simulate", solve)
     assert main(words) == 3
     err = capsys.readouterr().err
     assert "No space left" in err and err.count("\n") == 1 and files(disk).keys() == {"filler"}
     assert files(re.search(r"these results are in '(.*)'", err)[1]) == run.after
     (disk / "filler").unlink()
-    monkeypatch.setattr(fingerpad.simulation, "simulate", lambda *_, **__: run.result.comes)
+    monkeypatch.setattr(cli, "simulate", lambda *_, **__: run.result.comes)
     assert main(words) == 0 and files(disk / "out") == run.after
     libc = ctypes.CDLL(None)
     libc.umount2(str(disk).encode(), 2)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import fingerpad
-from fingerpad.cli import _error_line, main
-from fingerpad.planning.unbounded import in_words, seen_corners
-from fingerpad.results import ResultError, read_history, summary, write_history
+from fingerpad.cli import main
+from fingerpad.planning.unbounded import seen_corners
+from fingerpad.results import read_history, summary, write_history
 from fingerpad.specimen.files import write_pad
 from fingerpad.stimuli.shapes.sampled import Points
 from fingerpad.sweeps.design import Design
@@ -41,23 +41,6 @@ def test_a_history_is_read_by_its_folder_and_has_one_number_for_the_error(folder
     (folder / "empty").mkdir()
     with pytest.raises(FileNotFoundError):
         read_history("empty")
-    with pytest.raises(ResultError, match="no NetCDF file"):
-        read_history("scene.yaml")
-
-
-def test_kinds_of_receptor_by_any_of_their_names(folder):
-    history = fingerpad.simulate("scene.yaml")
-    one = fingerpad.respond(history, "SA-I")
-    assert one.equals(fingerpad.respond(history)) and one.afferent.values.tolist() == [
-        "slowly_adapting"
-    ]
-    assert fingerpad.respond(history, ["RA"]).equals(fingerpad.respond(history, "rapidly_adapting"))
-    with pytest.raises(ValueError, match="no afferent called 'PC'; known: slowly_adapting"):
-        fingerpad.respond(history, "PC")
-    with pytest.raises(
-        TypeError, match="a history is what simulate or read_history returns, not str 'scene.yaml'"
-    ):
-        fingerpad.respond("scene.yaml")
 
 
 def test_width_of_the_contact_and_of_what_touches(tmp_path):
@@ -198,19 +181,6 @@ def test_a_fillet_that_the_mesh_cannot_tell_is_marked_where_it_begins():
     )
 
 
-def test_plurals_and_large_errors_are_words():
-    ends = Points(np.array([-1e-3, 0, 1e-3]), np.array([1e-4, 0, 1e-4]))
-    assert in_words(ends, np.array([-1e-3, 1e-3])) == (
-        "the ends of the profile's points at x = -1 and 1 mm",
-    )
-    assert (
-        _error_line(
-            {"run": {"estimated_error": 2.0, "largest_error": 2.0, "peak_pressure_singular": 0}}
-        )
-        == "error more than 100 %"
-    )
-
-
 COLUMNS_TWICE = {
     "motion: [{table: t.csv}]": "time (s),force (N),force (gf)\n0,0,0\n1,0.1,20\n",
     "motion: {table: t.csv}": "time (s),time (ms),force (gf)\n0,0,0\n1,10,20\n",
@@ -253,35 +223,6 @@ def test_points_between_thousands_are_refused_where_semicolons_tell_the_language
         read_table("t.csv")
     (folder / "t.csv").write_text("x;y\n-6;3.600\n-5;2.5\n-3;900\n")
     assert read_table("t.csv").numbers(1) == [3.6, 2.5, 900]
-
-
-def test_samples_take_units_in_square_brackets_and_no_index(folder, capsys):
-    (folder / "sweep.yaml").write_text("scene: scene.yaml\nover: {table: t.csv}\n")
-    (folder / "t.csv").write_text(
-        "stimulus.curvature [1/m],motion[0].press_to_force (gf)\n100,5\n210,10\n"
-    )
-    assert Design(load_sweep("sweep.yaml")).changes(1) == {
-        "stimulus.curvature": "210.0 1/m",
-        "motion[0].press_to_force": "10.0 gf",
-    }
-    (folder / "t.csv").write_text(",stimulus.curvature (1/m)\n0,100\n1,210\n")
-    assert main(["sweep", "sweep.yaml"]) == 2
-    assert (
-        "has no name for column 1; allowed: a key in each; no index: in pandas to_csv(index=False)"
-        in capsys.readouterr().err
-    )
-
-
-def test_a_folder_of_a_sweep_leaves_out_hidden_files(folder):
-    (folder / "profiles").mkdir()
-    for name in ("a.csv", ".a.csv", "._b.csv"):
-        (folder / "profiles" / name).write_text("x (mm),y (mm)\n-1,1\n0,0\n1,1\n")
-    (folder / "sweep.yaml").write_text(
-        "scene: {stimulus: {shape: sampled, csv: profiles/a.csv}, motion: [{press_to_force: 2 "
-        "gf}]}\n"
-        "over: {stimulus.csv: {folder: profiles}}\n"
-    )
-    assert load_sweep("sweep.yaml").sweep.over["stimulus.csv"].labels() == ["a"]
 
 
 def test_a_receptor_below_the_pad_is_told_how_deep_it_may_be(tmp_path):

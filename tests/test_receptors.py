@@ -127,25 +127,18 @@ def test_a_constant_shift_is_given_back(shift):
 # -- Eqs 4-1 to 4-3 --------------------------------------------------------------------------------
 
 
-def test_pressure_terms_are_what_the_constants_multiply():
+@pytest.mark.parametrize(
+    ("law", "constants", "pressure"),
+    [
+        ("4-1", (2.0, 1e7, 500.0), 4000 + 2000 + 500),
+        ("4-1 read without an exponent", (1e6, 1e7, 500.0), 500 + 2000 + 500),
+        ("4-2", (1e7, 1e6, 20.0, 500.0), 2000 + 1000 + 4200 + 500),
+        ("4-3", (2.0, 1e7, 20.0, 500.0), 4000 + 2000 + 4200 + 500),
+    ],
+)
+def test_pressure_terms_are_what_the_constants_multiply(law, constants, pressure):
     at = {"edge_distance": 0.5e-3, "displacement": 0.2e-3, "speed": 1e-3, "curvature": 210.0}
-    constants = {
-        "4-1": (2.0, 1e7, 500.0),
-        "4-2": (1e7, 1e6, 20.0, 500.0),
-        "4-3": (2.0, 1e7, 20.0, 500.0),
-    }
-    by_hand = {
-        "4-1": 4000 + 2000 + 500,
-        "4-2": 2000 + 1000 + 4200 + 500,
-        "4-3": 4000 + 2000 + 4200 + 500,
-    }
-    for law, expected in by_hand.items():
-        assert laws.pressure_terms(law, **at) @ constants[law] == pytest.approx(expected)
-    assert laws.pressure_terms("4-1 read without an exponent", **at) @ [
-        1e6,
-        1e7,
-        500.0,
-    ] == pytest.approx(500 + 2000 + 500)
+    assert laws.pressure_terms(law, **at) @ constants == pytest.approx(pressure)
 
 
 @pytest.mark.parametrize("law", laws.NODE_TERMS)
@@ -551,28 +544,13 @@ def test_burst_of_a_convexity_is_as_wide_as_its_energy_is_high(stroke):
     ).all(axis=None)
 
 
-def test_raster_of_a_stroke_and_its_histogram_count_the_same(stroke):
+def test_histogram_of_a_stroke_counts_the_impulses_of_its_raster(stroke):
     frame = responses.predicted_rate(stroke, law=ImpulseRate(0.3, 0.0, 0.0, 0.0))
     impulses = responses.raster(frame, repetitions=12, seed=3)
-    assert impulses.equals(responses.raster(frame, repetitions=12, seed=3))
-    assert (
-        set(impulses["trial"]) == set(range(1, 13))
-        and impulses[DISTANCE].is_monotonic_increasing is False
-    )
     histogram = responses.stroke_histogram(frame, impulses, 12)
     assert np.allclose(np.diff(histogram[DISTANCE]), 0.5)
-    sliding = impulses[impulses[DISTANCE] > 0]
-    assert histogram[responses.IMPULSE_RATE].sum() * 0.05 * 12 == pytest.approx(
-        len(sliding), rel=0.02
-    )
-    mean = spikes.integrated(frame[TIME], frame[responses.IMPULSE_RATE])[-1]
-    assert len(impulses) / 12 == pytest.approx(mean, rel=0.03)
-    at = np.linspace(1, 8, 50)
-    frequency, expected = (
-        responses.mean_frequency(impulses, 12, at)[responses.FREQUENCY],
-        np.interp(at, frame[TIME], frame[responses.IMPULSE_RATE]),
-    )
-    assert frequency.to_numpy() == pytest.approx(expected, rel=0.5, abs=5)
+    counted = histogram[responses.IMPULSE_RATE].sum() * 0.05 * 12
+    assert counted == pytest.approx((impulses[DISTANCE] > 0).sum(), rel=0.02)
 
 
 # -- the study on made-up histories ----------------------------------------------------------------

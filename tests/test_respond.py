@@ -65,6 +65,10 @@ def test_kinds_of_receptor_and_laws_of_one_s_own():
     assert (both.impulse_rate.sel(afferent="rapidly_adapting")[-10:] == 0).all()
     assert int(both.impulses.sel(afferent="rapidly_adapting")[0]) > 10
     assert (both.impulse_time.sel(afferent="rapidly_adapting").max() <= 0.5).all()
+    rapid = fingerpad.respond(made_up(), "rapidly_adapting")
+    for name in ("RA", ["RA"], "FA-I"):
+        assert fingerpad.respond(made_up(), name).equals(rapid)
+    assert fingerpad.respond(made_up(), "SA-I").equals(fingerpad.respond(made_up()))
     own = fingerpad.respond(made_up(), laws)
     assert own.afferent.values.tolist() == ["double"] and float(
         own.impulse_rate[0, -1, 0]
@@ -93,8 +97,10 @@ def test_what_takes_no_time_has_no_rate():
     assert float(sent.impulse_rate.max()) == float(fingerpad.respond(made_up()).impulse_rate.max())
     with pytest.raises(ValueError, match="takes time"):
         fingerpad.respond(made_up().isel(time=slice(0, 1)))
-    with pytest.raises(ValueError, match="rapidly_adapting"):
-        fingerpad.respond(made_up(), ["pacinian"])
+    with pytest.raises(ValueError, match="no afferent called 'PC'; known: slowly_adapting"):
+        fingerpad.respond(made_up(), "PC")
+    with pytest.raises(TypeError, match="what simulate or read_history returns, not str 'my.yaml'"):
+        fingerpad.respond("my.yaml")
 
 
 def test_one_key_of_a_scene_writes_responses_into_history_and_summary(tmp_path):

@@ -25,18 +25,33 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import TextColumn, TimeElapsedColumn
 
 from fingerpad.documents import SceneError, read_yaml
-from fingerpad.files import disk_is_full, is_file, locked, read_input, staged, unusable
+from fingerpad.files import (
+    InUse,
+    disk_is_full,
+    files_below,
+    is_file,
+    locked,
+    read_input,
+    staged,
+    unusable,
+)
+from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.bounds import PlanError, percent
 from fingerpad.planning.plan import Plan, plan
+from fingerpad.processes import progress_bar
 from fingerpad.receptors.recovery import ReceptorError
+from fingerpad.results import summary, write_history, write_vtu
 from fingerpad.scenes.families import read_scene
 from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.simulation import simulate
+from fingerpad.specimen import mesh_for, quality_of, write_pad
 from fingerpad.specimen.outline import OutlineError
 from fingerpad.specimen.pad import MeshError
+from fingerpad.sweeps import command as sweeps
+from fingerpad.sweeps.engine import NotFinished
 from fingerpad.units import QuantityError, parse_quantity, unit_of
 
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -166,81 +181,50 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="fingerpad", description="Simulate touch on a human fingerpad."
     )
-    parser.add_argument(
-        "--version",
-        action="version",
-        version=f"fingerpad {version('fingerpad')}",
-        help="show the version and exit",
-    )
+    said = f"fingerpad {version('fingerpad')}"
+    shown = "show the version and exit"
+    parser.add_argument("--version", action="version", version=said, help=shown)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    plan = commands.add_parser(
-        "plan", help="say what would be simulated, why, and what it would cost"
-    )
-    plan.add_argument("--json", action="store_true", help="print plan.json instead of a table")
-    plan.add_argument(
-        "--cores", metavar="N", type=_cores, default=1, help="of a sweep: how many would run it"
-    )
-    plan.set_defaults(command=_plan)
+    def command(name: str, does: Callable, described: str) -> Callable[..., Any]:
+        """A command; the function that adds an option to it."""
+        added = commands.add_parser(name, help=described)
+        added.set_defaults(command=does)
+        return added.add_argument
 
-    run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
-    run.add_argument(
-        "--out", metavar="DIR", type=Path, help="where the results go (default: results/SCENE)"
+    plan = command("plan", _plan, "say what would be simulated, why, and what it would cost")
+    run = command("run", _run, "simulate a scene: history.nc, summary.json, plan.json")
+    mesh = command("mesh", _mesh, "write the mesh a scene would be simulated on")
+    sweep = command(
+        "sweep",
+        _sweep,
+        "simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing",
     )
-    run.add_argument(
-        "--force", action="store_true", help="replace what is in DIR under the names of the results"
-    )
-    run.add_argument(
-        "--vtu",
-        action="store_true",
-        help="also write fields for ParaView, in DIR/vtu: snapshots, or the last state",
-    )
-    run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
-    run.set_defaults(command=_run)
-
-    mesh = commands.add_parser("mesh", help="write the mesh a scene would be simulated on")
-    mesh.add_argument(
-        "--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm"
-    )
-    mesh.set_defaults(command=_mesh)
-
-    sweep = commands.add_parser(
-        "sweep", help="simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing"
-    )
-    sweep.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help="where the results go (default: results/sweeps/SWEEP)",
-    )
-    sweep.add_argument(
-        "--cores", metavar="N", type=_cores, default=1, help="processes at a time (default: 1)"
-    )
-    sweep.add_argument(
-        "--profile",
-        metavar="DIR",
-        help="a Snakemake profile instead of --cores, as workflow/profiles/slurm",
-    )
-    sweep.add_argument(
-        "--again",
-        action="store_true",
-        help="also try scenes again that could not be simulated before",
-    )
-    sweep.add_argument("--force", action="store_true", help="use DIR though it holds another sweep")
-    sweep.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
-    sweep.add_argument("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
-    sweep.set_defaults(command=_sweep)
-
-    for command in (plan, run, mesh):
-        command.add_argument(
-            "scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan"
-        )
-    for command in (plan, run, mesh, sweep):
-        command.add_argument(
-            "--accuracy",
-            metavar="X",
-            help="draft, thesis, fine or a tolerance; replaces what the scene states",
-        )
+    is_set: dict[str, Any] = {"action": "store_true"}
+    folder: dict[str, Any] = {"metavar": "DIR", "type": Path}
+    count: dict[str, Any] = {"metavar": "N", "type": _cores, "default": 1}
+    plan("--json", **is_set, help="print plan.json instead of a table")
+    plan("--cores", **count, help="of a sweep: how many would run it")
+    run("--out", **folder, help="where the results go (default: results/SCENE)")
+    sweep("--out", **folder, help="where the results go (default: results/sweeps/SWEEP)")
+    run("--force", **is_set, help="replace what is in DIR under the names of the results")
+    sweep("--force", **is_set, help="use DIR though it holds another sweep")
+    fields = "also write fields for ParaView, in DIR/vtu: snapshots, or the last state"
+    run("--vtu", **is_set, help=fields)
+    mesh_file = "mesh file, coordinates in mm"
+    mesh("--out", metavar="FILE.msh", type=Path, required=True, help=mesh_file)
+    sweep("--cores", **count, help="processes at a time (default: 1)")
+    cluster = "a Snakemake profile instead of --cores, as workflow/profiles/slurm"
+    sweep("--profile", metavar="DIR", help=cluster)
+    sweep("--again", **is_set, help="also try scenes again that could not be simulated before")
+    for option in (run, sweep):
+        option("--quiet", **is_set, help="no progress bar, no closing line")
+    for option in (plan, run, mesh):
+        option("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
+    sweep("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
+    levels = "draft, thesis, fine or a tolerance; replaces what the scene states"
+    for option in (plan, run, mesh, sweep):
+        option("--accuracy", metavar="X", help=levels)
     return parser
 
 
@@ -255,9 +239,7 @@ def _cores(text: str) -> int:
 
 def _plan(options: argparse.Namespace) -> None:
     if _is_sweep(options.scene):
-        from fingerpad.sweeps import command
-
-        command.plan(options.scene, options.accuracy, options.cores, options.json)
+        sweeps.plan(options.scene, options.accuracy, options.cores, options.json)
         return
     scene, chosen = _prepare(options)
     if options.json:
@@ -271,11 +253,6 @@ def _run(options: argparse.Namespace) -> int:
     _check_writable(out, directory=True)
     scene, chosen = _prepare(options)
     unit = _force_unit(options.scene)
-
-    # these compile kernels: a plan does not need them
-    from fingerpad.mechanics.stepping import NonConvergence
-    from fingerpad.results import summary, write_history, write_vtu
-    from fingerpad.simulation import simulate
 
     with _folder(out, scene, chosen, options) as folder:
         _check_room(out, chosen.result_bytes(scene, options.vtu))
@@ -308,21 +285,16 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _sweep(options: argparse.Namespace) -> int:
-    from fingerpad.sweeps import command
-    from fingerpad.sweeps.engine import NotFinished
-
     if options.out:
         _check_writable(options.out, directory=True)
     try:
-        command.sweep(options)
+        sweeps.sweep(options)
     except NotFinished as error:
         return _say(str(error), NOT_COMPLETED)
     return DONE
 
 
 def _mesh(options: argparse.Namespace) -> None:
-    from fingerpad.specimen import mesh_for, quality_of, write_pad
-
     if options.out.suffix != ".msh":
         raise _Refusal(f"--out: '{options.out}' is not a mesh file; allowed: a name ending in .msh")
     _check_writable(options.out, directory=False)
@@ -442,18 +414,16 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
     """The folder of the results, held for this process alone; refused if it holds what is not this
     scene's.
     """
-    with _directory(path), contextlib.ExitStack() as held:
-        try:
-            held.enter_context(locked(path))
-        except BlockingIOError:
-            allowed = "another folder, or later"
-            raise _Refusal(
-                f"--out: '{path}' is being written by another run; allowed: {allowed}"
-            ) from None
-        patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
-        folder = _Folder(path, scene.name, plan.to_dict(), patterns)
-        folder.check()
-        yield folder
+    patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
+    try:
+        with _directory(path), locked(path):
+            folder = _Folder(path, scene.name, plan.to_dict(), patterns)
+            folder.check()
+            yield folder
+    except InUse:
+        raise _Refusal(
+            f"--out: '{path}' is being written by another run; allowed: another folder, or later"
+        ) from None
 
 
 class _Folder:
@@ -494,31 +464,24 @@ class _Folder:
         or come beside them when ``keeping``. Where they cannot be written here, they go to a
         temporary place, which the error names.
         """
+        kept = self.files if keeping else []
         try:
             with _unwritable(self.path):
                 if foreign := self._foreign():  # since the run began
                     raise FileExistsError(
                         errno.EEXIST, f"'{foreign[0].name}' has come into it meanwhile"
                     )
-                self._replace(fill, keeping)
+                with staged(self.path, "plan.json", () if keeping else self.files) as stage:
+                    fill(stage)
+                    self._describe(stage, kept)
         except _NotWritten as reason:
             raise _NotWritten(f"{reason}; {self._elsewhere(fill)}") from None
 
-    def _replace(self, fill: Callable[[Path], None], keeping: bool) -> None:
-        with staged(self.path, "plan.json", () if keeping else self.files) as stage:
-            fill(stage)
-            self._describe(stage, self.files if keeping else [])
-
     def _describe(self, stage: Path, kept: Iterable[str] = ()) -> None:
         """Writes plan.json, which names the files that there are."""
-        written = {
-            item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()
-        }
-        files = sorted({*kept, *written, "plan.json"})
-        _write_json(
-            {**(self.before if kept else self.plan), "scene": self.scene, "files": files},
-            stage / "plan.json",
-        )
+        files = sorted({*kept, *files_below(stage), "plan.json"})
+        plan = self.before if kept else self.plan
+        _write_json(plan | {"scene": self.scene, "files": files}, stage / "plan.json")
 
     def _elsewhere(self, fill: Callable[[Path], None]) -> str:
         """Writes the results to a temporary place instead, and says where; or that they are
@@ -562,8 +525,6 @@ class _Folder:
         return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
 
     def _last_converged(self, dataset: Any, keeping: bool = False) -> None:
-        from fingerpad.results import write_history
-
         def last(stage: Path) -> None:
             if dataset is not None:
                 write_history(dataset, stage / "last_converged.nc")
@@ -593,42 +554,25 @@ def _say(message: str, code: int) -> int:
 
 
 def _print_plan(scene: Scene, plan: Plan) -> None:
-    from rich.console import Console
-
     Console(highlight=False).print(plan.shown(f"Plan of {scene.name}"), crop=False)
 
 
 @contextlib.contextmanager
 def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], None] | None]:
-    """A progress bar on a terminal's standard error, as a function to call after each step; else
-    None.
-    """
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-
+    """A progress bar of a run, as a function to call after each step; else None."""
     columns = (
-        TextColumn(escape(name)),
-        BarColumn(),
         TextColumn("t = {task.completed:.3g} of {task.total:.3g} s"),
-        TextColumn("contact {task.fields[width]:.2f} mm"),
+        TextColumn("contact {task.fields[contact_width_mm]:.2f} mm"),
         TextColumn("{task.fields[iterations]} iterations, {task.fields[cutbacks]} cuts"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(name, total=1.0, width=0.0, iterations=0, cutbacks=0)
+    start = {"contact_width_mm": 0.0, "iterations": 0, "cutbacks": 0}
+    with progress_bar(name, quiet, *columns, total=1.0, **start) as show:
 
-        def show(state: dict[str, Any]) -> None:
-            progress.update(
-                task,
-                completed=state["time_s"],
-                total=state["end_time_s"],
-                width=state["contact_width_mm"],
-                iterations=state["iterations"],
-                cutbacks=state["cutbacks"],
-            )
+        def after_step(state: dict[str, Any]) -> None:
+            show(completed=state["time_s"], total=state["end_time_s"], **state)
 
-        yield show
+        yield show and after_step
 
 
 def _force_unit(path: Path) -> str:

@@ -73,15 +73,13 @@ def at_outputs(
         way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]])
         known, at = (way * found["stroke_distance"], way * place) if way else (time, times)
         kinks = _kinks(found["contact_pressure"][knots] > 0)
-        of_nodes = [name for name in smooth if name in _PRESSURES and not way]
-        for name in of_nodes:
-            out[name][here] = _of_nodes(known[knots], found[name][knots], at[here])
-        others = [name for name in smooth if name not in of_nodes]
-        columns = [found[name][knots].reshape(len(knots), -1) for name in others]
-        curves = _through(known[knots], np.concatenate(columns, axis=1), kinks, at[here])
-        ends = np.cumsum([each.shape[1] for each in columns])
-        for name, values in zip(others, np.split(curves, ends[:-1], axis=1), strict=True):
-            out[name][here] = values.reshape(-1, *found[name].shape[1:])
+        for name in smooth:
+            values = found[name][knots]
+            if name in _PRESSURES and not way:
+                out[name][here] = _of_nodes(known[knots], values, at[here])
+            else:
+                curves = _through(known[knots], values.reshape(len(knots), -1), kinks, at[here])
+                out[name][here] = curves.reshape(-1, *values.shape[1:])
         last = state[here]
         share[here] = (at[here] - known[last - 1]) / (known[last] - known[last - 1])
         if not way:
@@ -97,10 +95,8 @@ def at_outputs(
     for name in _TAKEN:
         out[name][passed] = 0
     _contact(out, found, state, passed, share, records, skin_x, half)
-    out["peak_pressure"], out["centre_pressure"] = (
-        out["contact_pressure"].max(axis=1),
-        out["contact_pressure"][:, apex],
-    )
+    out["peak_pressure"] = out["contact_pressure"].max(axis=1)
+    out["centre_pressure"] = out["contact_pressure"][:, apex]
     return out, times
 
 

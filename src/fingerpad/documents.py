@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import reprlib
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from fingerpad.files import read_input
+from fingerpad.files import WrongInput, read_input
 
 LOOK_UP, HIDE = object(), object()
 MOST_VALUES = 200_000
@@ -123,8 +123,10 @@ def explain(error: ValidationError, file: Any, document: Any) -> SceneError:
     cause = first.get("ctx", {}).get("error")
     if isinstance(cause, SceneError):
         return cause
-    if hasattr(cause, "problem"):
-        problem = cause if isinstance(cause, Problem) else Problem(cause.problem, cause.allowed)
+    if isinstance(cause, Problem):
+        problem = cause
+    elif isinstance(cause, WrongInput):
+        problem = Problem(cause.problem, cause.allowed)
     elif first["type"] == "literal_error":
         problem = Problem("is not one of the choices", first["ctx"]["expected"])
     else:
@@ -132,14 +134,14 @@ def explain(error: ValidationError, file: Any, document: Any) -> SceneError:
     return SceneError(error_line(file, location, problem, document))
 
 
-def _parts(schema: Any) -> list[dict[str, Any]]:
-    """A field's JSON schema and those it is made of, at any depth."""
-    inner = (
-        schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
-    )
-    return ([schema] if isinstance(schema, dict) else []) + [
-        part for each in inner for part in _parts(each)
-    ]
+def _examples(schema: Any) -> Iterator[Any]:
+    """Examples in a field's JSON schema, at any depth."""
+    if isinstance(schema, dict):
+        yield from schema.get("examples", ())
+        schema = list(schema.values())
+    if isinstance(schema, list):
+        for part in schema:
+            yield from _examples(part)
 
 
 class Strict(BaseModel):
@@ -165,9 +167,8 @@ class Strict(BaseModel):
     def _allowed(cls, key: str) -> str:
         """What a field is, and an example of it where its type has one."""
         what = (cls.model_fields[key].description or "a value").split("\n")[0]
-        parts = _parts(cls.model_json_schema()["properties"].get(key))
-        examples = [example for part in parts for example in part.get("examples", ())]
-        return f"{what.rstrip('.')}, such as '{examples[0]}'" if examples else what
+        example = next(_examples(cls.model_json_schema()["properties"].get(key)), None)
+        return f"{what.rstrip('.')}, such as '{example}'" if example is not None else what
 
     @model_validator(mode="wrap")
     @classmethod
@@ -239,11 +240,14 @@ def _parsed(path: Path) -> Any:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError(one_line(f"{path}: cannot be read: {reason}")) from None
+    mark = ""
     try:
         return _constructed(text)
     except yaml.MarkedYAMLError as error:
         mark = f" at line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise SceneError(one_line(f"{path}: is not valid YAML{mark}: {error.problem}")) from None
+        reason = error.problem
+    except RecursionError:
+        reason = "nested too deeply"
     except (
         yaml.YAMLError,
         ValueError,
@@ -253,9 +257,7 @@ def _parsed(path: Path) -> Any:
         OverflowError,
     ) as error:
         reason = " ".join(str(error).split())
-        raise SceneError(one_line(f"{path}: is not valid YAML: {reason}")) from None
-    except RecursionError:
-        raise SceneError(one_line(f"{path}: is not valid YAML: nested too deeply")) from None
+    raise SceneError(one_line(f"{path}: is not valid YAML{mark}: {reason}"))
 
 
 def _constructed(text: bytes) -> Any:
@@ -281,16 +283,3 @@ def _written_out(node: yaml.Node, known: dict[int, float]) -> float:
         parts = (part for each in inner for part in (each if isinstance(each, tuple) else (each,)))
         known[id(node)] = 1 + sum(_written_out(part, known) for part in parts)
     return known[id(node)]
-
-
-def tidy_schema(schema: Any) -> Any:
-    """A JSON schema without generated titles and nulls."""
-    if isinstance(schema, list):
-        return [tidy_schema(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    return {
-        key: tidy_schema(value)
-        for key, value in schema.items()
-        if key != "title" and (key, value) != ("default", None)
-    }

@@ -27,6 +27,24 @@ copy (setup.py).
 """
 
 SCRATCH = ".fingerpad-"
+
+
+class WrongInput(ValueError):
+    """Something that a person wrote is wrong.
+
+    Attributes
+    ----------
+    problem : str
+        What is wrong, written to follow what it is about.
+    allowed : str
+        What would be right.
+    """
+
+    def __init__(self, problem: str, allowed: str) -> None:
+        super().__init__(f"{problem}; allowed: {allowed}")
+        self.problem, self.allowed = problem, allowed
+
+
 MOST_BYTES = {"text": 1 << 20, "table": 1 << 25, "mesh": 1 << 28}
 """Of a file that somebody brings: a scene or a sweep, a profile or a table of measured data, a
 mesh.
@@ -143,6 +161,10 @@ def write_text(path: str | Path, text: str) -> None:
     write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8"))
 
 
+class InUse(BlockingIOError):
+    """Another process writes into a directory."""
+
+
 @contextlib.contextmanager
 def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
     """Lock a directory for this process; the lock ends with the process and leaves no file.
@@ -155,19 +177,24 @@ def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
     Raises
     ------
     BlockingIOError
-        Another process holds it.
+        Another process holds it (`InUse`).
     """
     handle = os.open(directory, os.O_RDONLY)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            if isinstance(error, BlockingIOError):
-                raise
-        # another error comes from a file system without locks
+        except BlockingIOError:
+            raise InUse(f"'{directory}' is being written by another process") from None
+        except OSError:
+            pass  # of a file system without locks
         yield (handle,)
     finally:
         os.close(handle)
+
+
+def files_below(folder: Path) -> set[str]:
+    """Relative names (with "/") of all files below a folder."""
+    return {file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()}
 
 
 @contextlib.contextmanager
@@ -200,14 +227,9 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
     try:
         (stage / "new").mkdir()
         yield stage / "new"
-        written = {
-            item.relative_to(stage / "new").as_posix()
-            for item in (stage / "new").rglob("*")
-            if item.is_file()
-        }
-        names = sorted(written, key=lambda name: (name != first, name)) + sorted(
-            set(removing) - written
-        )
+        written = files_below(stage / "new")
+        names = sorted(written, key=lambda name: (name != first, name))
+        names += sorted(set(removing) - written)
         for parent in {(directory / name).parent for name in names} - {directory}:
             if parent.is_symlink():  # what it leads to is not ours
                 raise OSError(errno.ELOOP, f"'{parent.name}' is a link to another folder")

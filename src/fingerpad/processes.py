@@ -1,12 +1,16 @@
-"""What a process shows while it waits, and the threads it was given."""
+"""What a process shows while it waits or works, and the threads it was given."""
 
 import contextlib
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
 
 from rich.console import Console
 from rich.errors import LiveError
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn
 
 
 @contextlib.contextmanager
@@ -22,6 +26,24 @@ def waiting(text: str) -> Iterator[None]:
         except LiveError:  # there is a progress bar already
             print(text, file=sys.stderr)
         yield
+
+
+@contextlib.contextmanager
+def progress_bar(
+    name: str, quiet: bool, *columns: ProgressColumn, total: float | None = None, **fields: Any
+) -> Iterator[Callable[..., None] | None]:
+    """Show a bar on a terminal's standard error.
+
+    Yields a function that takes what changes of its task (completed, total, ``fields``); None where
+    there is no bar.
+    """
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), *columns)
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, speed_estimate_period=120) as progress:
+        yield partial(progress.update, progress.add_task(escape(name), total=total, **fields))
 
 
 def threads() -> int:

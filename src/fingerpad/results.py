@@ -28,6 +28,7 @@ from fingerpad.processes import threads
 from fingerpad.provenance import BESIDE_A_RUN, code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.stimuli.motion import NO_TIME
 
 _OF_TIME = {
@@ -175,46 +176,40 @@ def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
 def add_snapshots(
     history: xr.Dataset,
     times: list[float] | np.ndarray,
-    points: np.ndarray,
-    cells: np.ndarray,
-    region: np.ndarray,
-    displacement: np.ndarray,
-    pressure: np.ndarray,
-    regions: tuple[str, ...],
-    indenter: np.ndarray | None = None,
-    fields: Mapping[str, np.ndarray] | None = None,
+    mesh: PadMesh,
+    fields: Mapping[str, np.ndarray],
 ) -> None:
     """Add full fields to a history, in place.
 
     Parameters
     ----------
     times : (snapshot,) s
-    points : (node, 2) m, undeformed
-    cells : (element, nodes of an element)
-    region : (element,), indices of the layers ``regions``
-    displacement : (snapshot, node, 2) m
-    pressure : (snapshot, element) Pa
-    indenter : (snapshot, n, 2) m, outlines of the stimulus
-    fields : (snapshot, element[, components]), named as in :data:`FIELDS`
+    mesh
+        The whole pad.
+    fields
+        ``displacement`` (snapshot, node, 2) m, ``pressure`` (snapshot, element) Pa, ``indenter``
+        (snapshot, n, 2) m, the outline of the stimulus, and any of :data:`FIELDS` (snapshot,
+        element[, components]).
     """
-    of_nodes, of_elements = ("snapshot", "node", "axis"), ("snapshot", "element")
-    layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
-    mean = "mean stress kappa (J - 1), element mean"
-    new = {
-        "snapshot_time": ("snapshot", "s", "time of the full field", np.asarray(times, float)),
-        "node_position": (("node", "axis"), "m", "undeformed node position", points),
-        "element_nodes": (("element", "element_node"), "1", "nodes of each element", cells),
-        "element_region": ("element", "1", layers, region),
-        "snapshot_displacement": (of_nodes, "m", "displacement", displacement),
-        "snapshot_pressure": (of_elements, "Pa", mean, pressure),
+    of_elements, position = ("snapshot", "element"), "undeformed node position"
+    layers = ", ".join(f"{number} {name}" for number, name in enumerate(mesh.regions))
+    known: dict[str, tuple[tuple[str, ...], str, str]] = {
+        "displacement": (("snapshot", "node", "axis"), "m", "displacement"),
+        "pressure": (of_elements, "Pa", "mean stress kappa (J - 1), element mean"),
+        "indenter": (("snapshot", "outline_point", "axis"), "m", "outline of the stimulus"),
     }
-    if indenter is not None:
-        dims = ("snapshot", "outline_point", "axis")
-        new["snapshot_indenter"] = (dims, "m", "outline of the stimulus", indenter)
-    for name, values in (fields or {}).items():
-        of_field = (*of_elements, f"component_of_{name}")[: values.ndim]
-        unit, _, _, long_name = FIELDS[name]
-        new[f"snapshot_{name}"] = (of_field, unit, f"{long_name}, middle of the element", values)
+    for name, (unit, _, _, long_name) in FIELDS.items():
+        of_field = (*of_elements, f"component_of_{name}")
+        known[name] = of_field, unit, f"{long_name}, middle of the element"
+    new: dict[str, tuple] = {
+        "snapshot_time": ("snapshot", "s", "time of the full field", np.asarray(times, float)),
+        "node_position": (("node", "axis"), "m", position, mesh.points),
+        "element_nodes": (("element", "element_node"), "1", "nodes of each element", mesh.cells),
+        "element_region": ("element", "1", layers, mesh.region),
+    }
+    for name, values in fields.items():
+        dims, *about = known[name]
+        new[f"snapshot_{name}"] = (dims[: values.ndim], *about, values)
     history.update({name: _labelled(*about) for name, about in new.items()})
 
 
@@ -422,14 +417,15 @@ def write_history(history: xr.Dataset, path: str | Path) -> None:
         for name, variable in history.data_vars.items()
         if variable.ndim > 1 and variable.dtype.kind not in "UO" and _mostly_zero(variable.values)
     }
+    write_atomically(path, partial(write_dataset, history.drop_encoding(), packed))
 
-    def write(partial: Path) -> None:
-        try:
-            history.drop_encoding().to_netcdf(partial, engine="netcdf4", encoding=packed)
-        except RuntimeError as error:  # what netCDF makes of an error of the disk
-            raise disk_is_full(partial.parent) or OSError(f"{error}") from error
 
-    write_atomically(path, write)
+def write_dataset(data: xr.Dataset, encoding: Mapping[str, Any], path: Path) -> None:
+    """Write a NetCDF 4 file; what the library makes of an error of the disk is an OSError."""
+    try:
+        data.to_netcdf(path, engine="netcdf4", encoding=encoding)
+    except RuntimeError as error:
+        raise disk_is_full(path.parent) or OSError(f"{error}") from error
 
 
 def _mostly_zero(values: np.ndarray) -> bool:

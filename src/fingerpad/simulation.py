@@ -316,7 +316,7 @@ class Simulation:
         # one a leg and time: of the increments of a steady leg, all at one time, the last
         snapshots: dict[tuple[int, float], dict[str, np.ndarray]] = {}
         wanted = sorted(self.scene.outputs.snapshots)
-        total = self._nominal_end()
+        *_, last = schedule(self.scene, *self.plan.stepping)
         counts = {"iterations": 0, "cutbacks": 0}
         between = self.plan.between and Between(*self.plan.between)
 
@@ -341,7 +341,7 @@ class Simulation:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
                 width = 1e3 * self._width(record)
-                times = {"time_s": record.time, "end_time_s": total}
+                times = {"time_s": record.time, "end_time_s": last.time or 1.0}
                 progress(times | {"contact_width_mm": width} | counts)
 
         try:
@@ -369,17 +369,15 @@ class Simulation:
                 raise NonConvergence(before, f"an element turns inside out at {where}", FOLDED)
         return sampled
 
-    def _present(self):
-        return self.stepper.force / self.share, self.stepper.depth, self.stepper.touching_depth()
-
     def steps(self):
         """Steps of the motion with forces on the part of the pad that is solved."""
-        for step in schedule(self.scene, *self.plan.stepping, present=self._present):
-            yield step if step.force is None else replace(step, force=step.force * self.share)
+        stepper = self.stepper
 
-    def _nominal_end(self):
-        *_, last = schedule(self.scene, *self.plan.stepping)
-        return last.time or 1.0
+        def present():
+            return stepper.force / self.share, stepper.depth, stepper.touching_depth()
+
+        for step in schedule(self.scene, *self.plan.stepping, present=present):
+            yield step if step.force is None else replace(step, force=step.force * self.share)
 
     def _errors(self, records, width) -> dict[str, Any]:
         """The plan's error law at the contact that was found: of legs' ends, the worst of these,
@@ -473,17 +471,18 @@ class Simulation:
         least = min(record.smallest_jacobian for record in records)
         if self.plan.timed and missing > MAX_ENERGY_WARNING:
             off = f"the energy found is off the work that was done by up to {missing:.1%}"
-            yield f"{off}: more steps or a finer mesh will tell"
+            yield f"{off}: repeat with more steps or a finer mesh to check"
         if least < MIN_DET_F_WARNING and not self.body.geometrically_linear:
             volume = f"an element keeps {least:.1%} of its volume at one point"
-            yield f"{volume}: a finer mesh, or a fillet, will tell"
+            yield f"{volume}: repeat with a finer mesh, or a fillet, to check"
         uneven = np.nanmax([0.0, *(checkerboard(*pair) for pair in pressures)])
         if uneven > MAX_UNEVEN_WARNING and not any(self.unbounded):
             share = f"{uneven:.0%} of its peak (r.m.s.)"
-            yield f"pressure goes up and down from node to node, by {share}: a finer mesh will tell"
+            uneven_by = f"pressure goes up and down from node to node, by {share}"
+            yield f"{uneven_by}: repeat with a finer mesh to check"
         if self.stepper.wavered:
             near = "states near to one another may be in equilibrium"
-            yield f"{near}, and round-off choose between them: smaller steps will tell"
+            yield f"{near}, and round-off choose between them: repeat with smaller steps to check"
 
     def _notes(self, records, pressures):
         """What a person should know of the states that were found, and of the contact with a
@@ -648,23 +647,13 @@ class Simulation:
             f"states of a leg that takes no time stand {INSTANT:g} s apart"
         )
         if snapshots:
-            first, *_ = fields = list(snapshots.values())
-            found = {name: [field[name] for field in fields] for name in first}
-            add_snapshots(
-                history,
-                [history["time"].values[_last(out["leg"], times, *key)] for key in snapshots],
-                self.whole.points,
-                self.whole.cells,
-                self.whole.region,
-                np.array([unfold.nodes(u) for u in found.pop("displacement")]),
-                np.array([unfold.elements(p) for p in found.pop("pressure")]),
-                self.whole.regions,
-                np.array(found.pop("indenter")),
-                {
-                    name: np.array([unfold.elements(values, name) for values in each])
-                    for name, each in found.items()
-                },
-            )
+            first, *_ = found = list(snapshots.values())
+            fields = {
+                name: np.array([unfold.field(name, field[name]) for field in found])
+                for name in first
+            }
+            outputs = [_last(out["leg"], times, *key) for key in snapshots]
+            add_snapshots(history, history["time"].values[outputs], self.whole, fields)
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
             history = history.merge(respond(history, wanted))
@@ -705,36 +694,33 @@ class _Unfolding:
     """Values of the solved mesh on the whole mesh; the identity when the whole pad was solved."""
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
-        middle = whole.points[whole.cells].mean(1)
-        self.node, self.element = np.arange(len(whole.points)), np.arange(len(whole.cells))
-        self.left = solved.half & (whole.points[:, 0] < 0)
-        self._mirrored = solved.half & (middle[:, 0] < 0)
-        if solved.half:
-            self.node = _mirror_match(solved.points, whole.points)
-            self.element = _mirror_match(solved.points[solved.cells].mean(1), middle)
-        chain = skin_chain(whole)
-        position = np.full(len(solved.points), -1)
-        position[skin_nodes] = np.arange(len(skin_nodes))
-        self._skin, self._skin_left = position[self.node[chain]], self.left[chain]
+        middle = solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1)
+        skin = solved.points[skin_nodes], whole.points[skin_chain(whole)]
+        self._nodes = _mirror(solved.points, whole.points, solved.half)
+        self._elements = _mirror(*middle, solved.half)
+        self._skin = _mirror(*skin, solved.half)
 
-    def nodes(self, field):
-        out = field[self.node].copy()
-        out[self.left, 0] *= -1
-        return out
-
-    def elements(self, values, name=""):
-        out = values[self.element]
-        if name == "cauchy_stress":  # the shear stress xy changes its sign in a mirror
-            out[self._mirrored, 2] *= -1
+    def field(self, name, values):
+        """A full field by its name; mirrored, x and the shear stress xy change their sign."""
+        if name == "indenter":
+            return values
+        index, mirrored = self._nodes if name == "displacement" else self._elements
+        out, odd = values[index], {"displacement": 0, "cauchy_stress": 2}
+        if name in odd:
+            out[mirrored, odd[name]] *= -1
         return out
 
     def skin(self, values, odd=False):
-        out = values[self._skin]
-        return np.where(self._skin_left, -out, out) if odd else out
+        index, mirrored = self._skin
+        out = values[index]
+        return np.where(mirrored, -out, out) if odd else out
 
 
-def _mirror_match(solved, whole):
+def _mirror(solved, whole, half):
+    """Which of the solved points (n, 2) each point of the whole pad is, and whether mirrored."""
+    if not half:
+        return np.arange(len(whole)), np.zeros(len(whole), bool)
     right, near = np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]), 1e-6 * np.ptp(whole[:, 0])
     distance, index = KDTree(solved).query(right)
     assert distance.max() <= near, "the half mesh is not half of the whole"
-    return index
+    return index, whole[:, 0] < 0

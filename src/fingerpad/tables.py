@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from fingerpad.files import read_input
+from fingerpad.files import WrongInput, read_input
 
 MOST_LINES = 500_000
 """Of a table."""
@@ -34,18 +34,11 @@ _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _WRITE_POINTS = "numbers such as 1234.5, with a decimal point and no other sign"
 
 
-class TableError(ValueError):
-    """A table cannot be read.
-
-    Attributes
-    ----------
-    problem : what is wrong, written to follow the name of the file.
-    allowed : what would be right.
-    """
+class TableError(WrongInput):
+    """A table cannot be read; ``problem`` follows the name of its file."""
 
     def __init__(self, problem: str, allowed: str = SAVE_AS) -> None:
-        super().__init__(f"{problem}; allowed: {allowed}")
-        self.problem, self.allowed = problem, allowed
+        super().__init__(problem, allowed)
 
 
 @dataclass(frozen=True)
@@ -126,14 +119,12 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
     """Text of a file, and what is unusual about its encoding."""
     if content.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
         raise TableError("is a spreadsheet, not text")
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    encoding = "utf-8-sig"
+    for name, high_bytes in (("utf-16-le", content[1:400:2]), ("utf-16-be", content[:400:2])):
+        if len(content) > 3 and high_bytes.count(0) > len(high_bytes) / 2:
+            encoding = name
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):  # it says so itself
         encoding = "utf-16"
-    elif len(content) > 3 and content[1:400:2].count(0) > len(content[1:400:2]) / 2:
-        encoding = "utf-16-le"
-    elif len(content) > 3 and content[:400:2].count(0) > len(content[:400:2]) / 2:
-        encoding = "utf-16-be"
-    else:
-        encoding = "utf-8-sig"
     try:
         text, notes = content.decode(encoding), []
     except UnicodeDecodeError as error:

@@ -16,6 +16,8 @@ from typing import Any
 
 import pint
 
+from fingerpad.files import WrongInput
+
 
 @dataclass(frozen=True)
 class Dimension:
@@ -75,21 +77,8 @@ REGISTRY = pint.UnitRegistry()
 REGISTRY.define("gram_weight = gram_force = gw")
 
 
-class QuantityError(ValueError):
-    """A quantity that cannot be read.
-
-    Attributes
-    ----------
-    problem : str
-        What is wrong, to follow the offending value ("has no unit").
-    allowed : str
-        What would be right.
-    """
-
-    def __init__(self, problem: str, allowed: str) -> None:
-        super().__init__(f"{problem}; allowed: {allowed}")
-        self.problem = problem
-        self.allowed = allowed
+class QuantityError(WrongInput):
+    """A quantity that cannot be read; ``problem`` follows the value ("has no unit")."""
 
 
 def allowed(dimension: str) -> str:

@@ -57,15 +57,15 @@ def pressure_terms(law: str, **quantities: np.ndarray) -> np.ndarray:
         that of the skin at the contact's edge; ``speed``, m/s, of that displacement at the node;
         ``curvature``, 1/m, of the surface. Only those that the law names are looked at.
     """
-    given = {
-        "inverse edge distance": lambda: 1 / np.asarray(quantities["edge_distance"]),
-        "edge distance": lambda: np.asarray(quantities["edge_distance"]),
-        "displacement": lambda: np.asarray(quantities["displacement"]),
-        "speed": lambda: np.asarray(quantities["speed"]),
-        "curvature": lambda: np.asarray(quantities["curvature"]),
-        "constant": lambda: np.ones(()),
-    }
-    return np.stack(np.broadcast_arrays(*(given[name]() for name in NODE_TERMS[law])), axis=-1)
+
+    def term(name: str) -> np.ndarray:
+        if name == "constant":
+            return np.ones(())
+        if name == "inverse edge distance":
+            return 1 / np.asarray(quantities["edge_distance"])
+        return np.asarray(quantities[name.replace(" ", "_")])
+
+    return np.stack(np.broadcast_arrays(*map(term, NODE_TERMS[law])), axis=-1)
 
 
 def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np.ndarray:
@@ -88,9 +88,8 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
     s = np.asarray(x, float) - np.asarray(reference, float)[..., None]
     far = np.abs(s)
     fallen = r * np.expm1(-far / r)
-    once = (
-        -np.sign(s[..., [0, -1]]) * fallen[..., [0, -1]]
-    )  # integral of the kernel at the ends, and the integral of that
+    # integral of the kernel at the ends, and the integral of that
+    once = -np.sign(s[..., [0, -1]]) * fallen[..., [0, -1]]
     twice = r * (far + fallen)
     slope = np.diff(twice, axis=-1) / np.diff(s, axis=-1)
     return np.diff(slope, axis=-1, prepend=once[..., :1], append=once[..., 1:])
@@ -124,9 +123,8 @@ class SpatialSum:
         """
         x, pressure = np.asarray(x, float), np.asarray(pressure, float)
         on = np.flatnonzero(np.any(pressure != 0, axis=tuple(range(pressure.ndim - 1))))
-        touched = (
-            slice(max(on[0] - 1, 0), on[-1] + 2) if len(on) else slice(0, 2)
-        )  # weights beyond it meet no pressure
+        # weights beyond it meet no pressure
+        touched = slice(max(on[0] - 1, 0), on[-1] + 2) if len(on) else slice(0, 2)
         return np.einsum(
             "...n,...n->...",
             kernel_weights(x[..., touched], reference, self.r),

@@ -12,6 +12,7 @@ are kept apart, because under constant force they disagree even in trend (see
 """
 
 import numpy as np
+import pandas as pd
 
 from fingerpad.mechanics.finite_strain import (
     deviator_square,
@@ -29,13 +30,8 @@ def _layers(body):
         part.elements[:, None] * np.column_stack([np.ones(len(part.constants)), part.constants])
         for part in body.laws
     ]
-    layer = np.zeros(len(body.shear), int)
-    for each in np.column_stack(
-        [body.shear, *laws]
-    ).T:  # one by one, for that is faster than whole rows
-        values, number = np.unique(each, return_inverse=True)
-        layer = np.unique(layer * len(values) + number, return_inverse=True)[1]
-    return layer
+    materials = pd.DataFrame(np.column_stack([body.shear, *laws]))
+    return materials.groupby(list(materials)).ngroup().to_numpy()
 
 
 class MaterialPoints:
@@ -159,7 +155,7 @@ class MaterialPoints:
         }
         if self.recovery is None:
             return found
-        fitted = {name: self.recovery(values) for name, values in found.items()}
+        fitted = {name: self.recovery @ values for name, values in found.items()}
         for name in fitted.keys() - {"hydrostatic_pressure", "dilatation"}:
             fitted[name] = np.maximum(fitted[name], 0.0)  # a size, which a fit near zero may miss
         return fitted
@@ -181,12 +177,8 @@ def logarithmic_strain(f: np.ndarray) -> np.ndarray:
     """Spatial logarithmic (Hencky) strain ``log(F F^T) / 2`` in the plane, (nr, 2, 2), of
     deformation gradients (nr, 2, 2).
     """
-    b = f @ f.swapaxes(1, 2)
-    mean = 0.5 * np.trace(b, axis1=1, axis2=2)
-    share = np.hypot(0.5 * (b[:, 0, 0] - b[:, 1, 1]), b[:, 0, 1]) / mean
-    factor = np.where(share > 1e-6, np.arctanh(share) / np.maximum(share, 1e-6), 1.0) / (2 * mean)
-    swelling = 0.5 * np.log(np.linalg.det(f)) - factor * mean
-    return factor[:, None, None] * b + swelling[:, None, None] * np.eye(2)
+    squares, axes = np.linalg.eigh(f @ f.swapaxes(1, 2))
+    return (axes * (0.5 * np.log(squares))[:, None, :]) @ axes.swapaxes(1, 2)
 
 
 def strain_energies(f, strain, stress, branches, network, shear, shear_instantaneous, volumetric):

@@ -3,9 +3,9 @@ an element's strain is best.
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.spatial import KDTree
 
 from fingerpad.specimen.element_kinds import KINDS
@@ -20,6 +20,8 @@ FITTED = {
 """By element, the points of the reference cell that are sampled, and the degree of the polynomial
 fitted to what is there.
 """
+_BORDER = 1e-6
+"""Reference coordinates that a point may lie outside an element."""
 _RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
 """Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
 _MOST = 5.0
@@ -40,28 +42,7 @@ class Location:
     xi: np.ndarray
 
 
-@dataclass(frozen=True)
-class Sums:
-    """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
-
-    Attributes
-    ----------
-    weights, index
-        (m,) of all rows after each other, and of which sample.
-    starts
-        (nr,) where each row begins.
-    """
-
-    weights: np.ndarray
-    index: np.ndarray
-    starts: np.ndarray
-
-    def __call__(self, values: np.ndarray) -> np.ndarray:
-        """Sums (nr, ...) of values (samples, ...)."""
-        return np.add.reduceat((self.weights * values[self.index].T).T, self.starts, axis=0)
-
-
-def containing(space, points, tolerance=1e-6):
+def containing(space, points):
     """Every element that each physical point (n, 2), m, lies in, borders included.
 
     Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point
@@ -80,12 +61,11 @@ def containing(space, points, tolerance=1e-6):
     """
     centres = space.centres
     near = KDTree(centres).query(points, np.arange(1, min(24, len(centres)) + 1))[1]
-    parts = [_among(space, points, near, tolerance)]
-    for k in np.setdiff1d(
-        np.arange(len(points)), parts[0][0]
-    ):  # beside a row of many narrow elements a long one is farther off
+    parts = [_among(space, points, near)]
+    # beside a row of many narrow elements a long one is farther off
+    for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):
         every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
-        owner, element, xi = _among(space, points[[k]], every, tolerance)
+        owner, element, xi = _among(space, points[[k]], every)
         if not len(owner):
             x, y = points[k] * 1e3
             raise ReceptorError(
@@ -97,7 +77,7 @@ def containing(space, points, tolerance=1e-6):
     return owner[order], Location(element[order], xi[order])
 
 
-def _among(space, points, candidates, tolerance):
+def _among(space, points, candidates):
     """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,),
     reference coordinates (m, 2).
     """
@@ -109,8 +89,8 @@ def _among(space, points, candidates, tolerance):
     )
     element = candidates[owner, column]
     xi = _inverse_map(space.element, nodes[owner, column], points[owner])
-    inside = (xi >= -tolerance).all(1)
-    inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
+    most = xi.sum(1) if space.element.triangle else xi.max(1)
+    inside = (xi.min(1) >= -_BORDER) & (most <= 1 + _BORDER)
     return owner[inside], element[inside], xi[inside]
 
 
@@ -150,8 +130,8 @@ def _mean_of_neighbours(space, layers, points):
 
 
 def recovery(space, layers, points, mirrored):
-    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at
-    points; None: samples are values.
+    """Where to sample (:class:`Location`), and the matrix (nr, samples) that makes values at points
+    of samples; None: samples are values.
 
     Strain is right to a power of the edges more at some points of an element: in the middle of a
     linear quad, at the 2 x 2 Gauss points of a quadratic one (Barlow 1976); a triangle's quadrature
@@ -179,60 +159,53 @@ def recovery(space, layers, points, mirrored):
     if not len(points):
         return Location(np.zeros(0, int), np.zeros((0, 2))), None
     found, owner, share = _mean_of_neighbours(space, layers, points)
-    fits = (
-        _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
-    )
-    if not fits and len(owner) == len(points):
+    best, degree = FITTED.get(space.element.name, (np.zeros((1, 2)), None))
+    row, sample, weight = _fits(space, layers, points, owner, found, mirrored, best, degree)
+    if not len(row) and len(owner) == len(points):
         return found, None
-    plain = ~np.isin(owner, list(fits))
-    rule = FITTED[space.element.name][0] if fits else np.zeros((1, 2))
-    used = np.unique(np.concatenate([sample for sample, _ in fits.values()] or [np.zeros(0, int)]))
+    plain = ~np.isin(owner, row)
+    used, column = np.unique(sample, return_inverse=True)
+    element, of_best = np.divmod(used, len(best))
     location = Location(
-        np.concatenate([used // len(rule), found.element[plain]]),
-        np.concatenate([rule[used % len(rule)], found.xi[plain]]),
+        np.append(element, found.element[plain]), np.concatenate([best[of_best], found.xi[plain]])
     )
-    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [
-        len(used) + np.arange(np.count_nonzero(plain))
-    ]
-    weights = [weight for _, weight in fits.values()] + [share[plain]]
-    whose = [np.full(len(sample), k) for k, (sample, _) in fits.items()] + [owner[plain]]
-    index, weights, whose = (np.concatenate(each) for each in (index, weights, whose))
-    order = np.argsort(whose, kind="stable")
-    return location, Sums(
-        weights[order], index[order], np.unique(whose[order], return_index=True)[1]
-    )
+    column = np.append(column, len(used) + np.arange(np.count_nonzero(plain)))
+    places = np.append(row, owner[plain]), column
+    return location, csr_array((np.append(weight, share[plain]), places))
 
 
-def _fits(space, layers, points, owner, found, mirrored):
-    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points
-    where a fit is good.
+def _fits(space, layers, points, owner, found, mirrored, best, degree):
+    """Point, sample and weight (m,) of all that is summed for points where a fit is good; samples
+    are numbered element by element.
 
     Parameters
     ----------
     owner, found
         Of :func:`_mean_of_neighbours`.
+    best, degree
+        Of :data:`FITTED`; the degree is None where nothing is fitted.
     """
+    fits = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
+    if degree is None:
+        return fits[0]
     nodes = space.points[space.cells[found.element]]
     inverse = np.linalg.inv(np.einsum("nai,naj->nij", space.element.shape(found.xi)[1], nodes))
-    best, degree = FITTED[space.element.name]
     values = space.element.shape(best)[0]
-    fits = {}
     for k, (own, elements) in enumerate(_patches(space, layers, owner, found.element)):
         place = np.einsum("qa,eai->eqi", values, space.points[space.cells[elements]]).reshape(-1, 2)
         sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
         if mirrored:
             place, sample = np.concatenate([place, place * [-1, 1]]), np.tile(sample, 2)
-        away = (place - points[k]) @ inverse[
-            own
-        ]  # in lengths of each of the elements that the point lies in
+        # in lengths of each of the elements that the point lies in
+        away = (place - points[k]) @ inverse[own]
         square = (away**2).sum(axis=2).mean(axis=0)
         for radius in _RADII:
             on = square < radius**2
             weights = _fitted(away[0, on] / radius, 1 - square[on] / radius**2, degree)
             if weights is not None:
-                fits[k] = sample[on], weights
+                fits.append((np.full(len(weights), k), sample[on], weights))
                 break
-    return fits
+    return [np.concatenate(parts) for parts in zip(*fits, strict=True)]
 
 
 def _fitted(at, weight, degree):
@@ -257,16 +230,12 @@ def _patches(space, layers, owner, element):
     with these, or the next.
     """
     corners = space.cells[:, : 3 if space.element.triangle else 4]
-    order = np.argsort(corners.ravel(), kind="stable")
-    ends = np.searchsorted(corners.ravel()[order], np.arange(len(space.points) + 1))
-    owners = order // corners.shape[1]
-
-    @cache
-    def around(elements):
-        near = np.concatenate(
-            [owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])]
-        )
-        return tuple(np.unique(near[layers[near] == layers[elements[0]]]))
-
+    number = np.repeat(np.arange(len(corners)), corners.shape[1])
+    has_node = csr_array((np.ones(corners.size), (number, corners.ravel())))
+    neighbours = has_node @ has_node.T
     for own in np.split(np.arange(len(owner)), np.flatnonzero(np.diff(owner)) + 1):
-        yield own, np.array(around(around(tuple(element[own]))))
+        near = element[own]
+        for _ in range(2):
+            around = np.unique(neighbours[near].indices)
+            near = around[layers[around] == layers[near[0]]]
+        yield own, near

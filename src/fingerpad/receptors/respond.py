@@ -28,6 +28,13 @@ NAMES = {
     "FA-I": "rapidly_adapting",
 }
 """Other names of these kinds, as physiologists and files of recordings have them."""
+_SENT = {
+    "impulse_rate": ("1/s", "predicted impulse rate"),
+    "impulses": ("1", "predicted number of impulses"),
+    "impulse_time": ("s", "times of the predicted impulses"),
+    "response_time": ("s", "time"),
+}
+"""Variable -> unit, long name."""
 
 
 def respond(
@@ -112,27 +119,24 @@ def respond(
     times = np.full((*rates.shape[::2], max(map(len, trains), default=0)), np.nan)
     for place, train in zip(places, trains, strict=True):
         times[place][: len(train)] = train
-    counts, each = np.isfinite(times).sum(2), ("afferent", "receptor")
-    about = {
-        "impulse_rate": {"units": "1/s", "long_name": "predicted impulse rate"},
-        "impulses": {"units": "1", "long_name": "predicted number of impulses"},
-        "impulse_time": {"units": "s", "long_name": "times of the predicted impulses"},
-        "response_time": {"units": "s", "long_name": "time"},
-    }
-    data = {
-        "impulse_rate": (("afferent", "response_time", "receptor"), rates),
-        "impulses": (each, counts),
-        "impulse_time": ((*each, "impulse"), times),
-    }
-    return xr.Dataset(
-        {name: (*values, about[name]) for name, values in data.items()},
+    counts, of_all = np.isfinite(times).sum(2), ("afferent", "receptor")
+    sent = xr.Dataset(
+        {
+            "impulse_rate": (("afferent", "response_time", "receptor"), rates),
+            "impulses": (of_all, counts),
+            "impulse_time": ((*of_all, "impulse"), times),
+        },
         {
             "afferent": list(laws),
-            "response_time": ("response_time", apart(at), about["response_time"]),
-            **{name: history.coords[name] for name in ("receptor_depth", "receptor_offset")},
+            "response_time": apart(at),
+            "receptor_depth": history.receptor_depth,
+            "receptor_offset": history.receptor_offset,
         },
         {"laws": "; ".join(f"{name}: {law}" for name, law in laws.items())},
     )
+    for name, (unit, long_name) in _SENT.items():
+        sent[name].attrs = {"units": unit, "long_name": long_name}
+    return sent
 
 
 def _law(name: str) -> ImpulseRate | RapidlyAdapting:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 VARIATION = 0.25
 """Coefficient of variation of the intervals at a steady rate: assumed, the thesis states none.
@@ -25,8 +26,7 @@ def integrated(time, rate) -> np.ndarray:
     """Integral (n,) of a rate (n,) from the first time (n,) s on; the rate is linear in between, a
     repeated time is a jump.
     """
-    time, rate = np.asarray(time, float), np.asarray(rate, float)
-    return np.concatenate([[0.0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
+    return cumulative_trapezoid(rate, time, initial=0.0)
 
 
 def impulses(
@@ -81,9 +81,8 @@ def _thresholds(total: float, variation: float, seed) -> np.ndarray:
     if seed is None:
         raise ValueError("variability needs a seed, so that the impulses can be made again")
     random, shape = np.random.default_rng(seed), variation**-2
-    due = np.array(
-        [random.uniform() * random.gamma(shape + 1, 1 / shape)]
-    )  # a place in the interval that is under way
+    # a place in the interval that is under way
+    due = np.array([random.uniform() * random.gamma(shape + 1, 1 / shape)])
     while due[-1] <= total:
         more = random.gamma(shape, 1 / shape, size=int(1.2 * total) + 16)
         due = np.concatenate([due, due[-1] + np.cumsum(more)])
@@ -96,10 +95,8 @@ def trains(
     """Impulse times (s) of several repetitions, each with a variability of its own; the first ones
     do not depend on how many.
     """
-    return [
-        impulses(time, rate, variation, child)
-        for child in map(np.random.default_rng, np.random.SeedSequence(seed).spawn(repetitions))
-    ]
+    seeds = np.random.SeedSequence(seed).spawn(repetitions)
+    return [impulses(time, rate, variation, own) for own in seeds]
 
 
 def binned_rate(trains: Sequence[np.ndarray], edges) -> np.ndarray:
@@ -132,6 +129,5 @@ def instantaneous_frequency(train, at=None) -> np.ndarray:
     frequency = 1 / np.diff(train)
     if at is None:
         return frequency
-    interval = np.searchsorted(train, np.asarray(at, float), side="right") - 1
-    inside = (interval >= 0) & (interval < len(frequency))
-    return np.where(inside, np.append(frequency, 0.0)[np.where(inside, interval, -1)], 0.0)
+    interval = np.searchsorted(train, np.asarray(at, float), side="right")
+    return np.concatenate([[0.0], frequency, [0.0]])[np.minimum(interval, len(frequency) + 1)]

@@ -46,10 +46,8 @@ def run_batch(todo: Path, records: Path) -> None:
                 continue
             history = records.parent.parent / "histories" / f"{key}.nc"
             if (deaths := _deaths(running).get(key, 0)) >= MOST_DEATHS:
-                cause = (
-                    f"its process was killed {deaths} times while it ran; is there memory enough?"
-                )
-                record = _failed(cause)
+                killed = f"its process was killed {deaths} times while it ran"
+                record = _failed(f"{killed}; is there memory enough?")
             else:
                 with _noted(running, key):
                     record = _record(base, changes, batch, history)

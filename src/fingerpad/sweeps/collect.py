@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import json
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.files import disk_is_full, write_atomically
+from fingerpad.files import write_atomically
+from fingerpad.results import write_dataset
 from fingerpad.sweeps.engine import read_layout
 from fingerpad.sweeps.records import read_records
 
@@ -56,23 +59,18 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
     columns = _columns(design, records)
     sizes = design["dimensions"]
     shape = tuple(sizes.values())
+    counts = {"scenes": len(design["keys"]), "failed": int(columns["failed"][0].sum())}
     data = xr.Dataset(
         {name: (tuple(sizes), c.reshape(shape), about) for name, (c, about) in columns.items()},
         {p["name"]: _coordinate(p) for p in design["parameters"]},
-        design["about"]
-        | {"scenes": len(design["keys"]), "failed": int(columns["failed"][0].sum())},
+        design["about"] | counts,
     )
-    numeric = [name for name in columns if name not in ("failed", "diagnosis")]
-    encoding = {name: {"zlib": True, "complevel": 1} for name in numeric}
+    packed = {"zlib": True, "complevel": 1}
+    encoding = dict.fromkeys(columns.keys() - {"failed", "diagnosis"}, packed)
 
-    def write(partial: Path) -> None:
-        try:
-            data.to_netcdf(partial, engine="netcdf4", encoding=encoding)
-        except RuntimeError as error:  # netCDF4's error for a full disk
-            raise disk_is_full(partial.parent) or OSError(str(error)) from error
-
-    write_atomically(dataset, write)
-    write_atomically(table, lambda partial: _tabulate(design, columns, partial))
+    write_atomically(dataset, partial(write_dataset, data, encoding))
+    frame = _table(data, list(columns))
+    write_atomically(table, partial(frame.to_csv, index=False, lineterminator="\n"))
 
 
 def collect_layout(folder: Path, dataset: Path, table: Path) -> None:
@@ -87,25 +85,27 @@ def _columns(
     design: Mapping[str, Any], records: Iterable[Path]
 ) -> dict[str, tuple[np.ndarray, dict[str, str]]]:
     """Name of each variable -> its values, one a scene, and its attributes."""
-    keys, numbers = design["keys"], {}
-    others = {p["name"] for p in design["parameters"]} | set(design["dimensions"])
+    keys, numbers = design["keys"], defaultdict(list)
     for number, key in enumerate(keys):
-        numbers.setdefault(key, []).append(number)
+        numbers[key].append(number)
     failed, diagnosis = np.full(len(keys), -1, "i1"), np.full(len(keys), "", object)
     columns = {"failed": (failed, FAILED), "diagnosis": (diagnosis, DIAGNOSIS)}
     for name, (unit, text) in RUN.items():
         columns[name] = np.full(len(keys), np.nan), {"units": unit, "long_name": text}
+    taken = {p["name"] for p in design["parameters"]} | set(design["dimensions"])
     names: dict[tuple[str, str], str] = {}
     for record in (record for file in records for record in read_records(file)):
         wrong = record["diagnosis"]
         at = [n for n in numbers.get(record["key"], ()) if failed[n] < 0 or failed[n] > bool(wrong)]
+        if not at:
+            continue
         failed[at], diagnosis[at] = bool(wrong), wrong
         for name in RUN:
             columns[name][0][at] = record.get(name, np.nan)
-        for quantity, condition, unit, value in record["measures"] if at else ():
+        for quantity, condition, unit, value in record["measures"]:
             if (quantity, condition) not in names:
                 name = names[quantity, condition] = _name(
-                    quantity, condition, others | set(columns)
+                    quantity, condition, taken | columns.keys()
                 )
                 about = {"units": unit, "long_name": _long_name(quantity, condition)}
                 about |= {"quantity": quantity, "condition": condition}
@@ -140,23 +140,13 @@ def _coordinate(parameter: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str
     return parameter["dimension"], values, attributes
 
 
-def _tabulate(design: Mapping[str, Any], columns: Mapping[str, Any], path: Path) -> None:
+def _table(data: xr.Dataset, variables: list[str]) -> pd.DataFrame:
     """A row a scene: number, parameters, measures with their units, errors, diagnosis."""
     last = [*RUN, "failed", "diagnosis"]
-    number = np.arange(len(design["keys"]))
-    places = np.unravel_index(number, tuple(design["dimensions"].values()))
-    place = dict(zip(design["dimensions"], places, strict=True))
-    table = {"scene": number}
-    for p in design["parameters"]:
-        values = np.array(p["values"], object)
-        table[_header(p["name"], p["unit"])] = values[place[p["dimension"]]]
-    for name in [*(name for name in columns if name not in last), *last]:
-        values, about = columns[name]
-        unit = about.get("units", "") if name != "failed" else ""
-        counts = name in ("nodes", "steps", "iterations")
-        table[_header(name, unit)] = pd.array(values, "Int64") if counts else values
-    pd.DataFrame(table).to_csv(path, index=False, lineterminator="\n")
-
-
-def _header(name: str, unit: str) -> str:
-    return f"{name} ({unit})" if unit else name
+    names = [*data.coords, *(name for name in variables if name not in last), *last]
+    frame = data.to_dataframe().reset_index()[names]
+    frame = frame.astype(dict.fromkeys(("nodes", "steps", "iterations"), "Int64"))
+    units = {name: data[name].attrs.get("units") for name in names if name != "failed"}
+    headers = {name: f"{name} ({unit})" for name, unit in units.items() if unit}
+    frame.insert(0, "scene", range(len(frame)))
+    return frame.rename(columns=headers)

@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import sys
-from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import netCDF4
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
 from fingerpad.documents import SceneError, read_yaml
+from fingerpad.processes import progress_bar
 from fingerpad.sweeps.design import Design, Parameter
 from fingerpad.sweeps.engine import Layout, held, lay_out, run_layout
 from fingerpad.sweeps.forecast import forecast
 from fingerpad.sweeps.language import Read, load_sweep
+
+PLANNING = (TaskProgressColumn(), TimeRemainingColumn())
+RUNNING = (
+    TextColumn("{task.completed} of {task.total} scenes"),
+    TextColumn("{task.fields[failed]} failed"),
+    TimeElapsedColumn(),
+    TextColumn("left"),
+    TimeRemainingColumn(),
+)
+"""Columns of the bars of a sweep."""
 
 
 def read(path: Path, accuracy: str | None) -> Read:
@@ -45,17 +58,18 @@ def plan(path: Path, accuracy: str | None, cores: int, as_json: bool) -> None:
     """Print what a sweep would take. Raises SceneError."""
     design = Design(read(path, accuracy))
     design.check()
-    with _bar("planning", len(design), as_json) as show:
+    with progress_bar("planning", as_json, *PLANNING, total=len(design)) as show:
         cost = forecast(design, show)
+    scenes = cost.scenes
     content = {
         "sweep": design.read.name,
         "scenes": len(design),
         "dimensions": design.dimensions,
         "effects": dict(cost.effects),
-        "nodes": [min(cost.nodes), max(cost.nodes)],
-        "largest_expected_error": cost.worst_error,
-        "predicted_cost_s": round(sum(cost.cost_s), 1),
-        "predicted_memory_MB": round(max(cost.memory_MB)),
+        "nodes": [int(scenes.nodes.min()), int(scenes.nodes.max())],
+        "largest_expected_error": float(scenes.error.max()),
+        "predicted_cost_s": round(float(scenes.cost_s.sum()), 1),
+        "predicted_memory_MB": round(scenes.memory_MB.max()),
         "cores": cores,
         "predicted_wall_s": round(cost.wall_s(cores), 1),
     }
@@ -104,10 +118,11 @@ def sweep(options: Any) -> None:
     loaded = read(options.sweep, options.accuracy)
     folder = options.out or Path("results/sweeps") / loaded.name
     with held(folder) as lock:
-        with _bar("planning", None, options.quiet) as show:
+        with progress_bar("planning", options.quiet, *PLANNING) as show:
             layout = lay_out(loaded, folder, options.cores, options.force, options.again, show)
-        with _watching(layout, options.quiet) as watch:
-            run_layout(layout, options.cores, options.profile, watch, lock)
+        quiet = options.quiet or not layout.missing
+        with progress_bar(layout.name, quiet, *RUNNING, total=layout.missing, failed=0) as show:
+            run_layout(layout, options.cores, options.profile, show, lock)
     if not options.quiet:
         print(_closing(layout))
 
@@ -121,35 +136,3 @@ def _closing(layout: Layout) -> str:
         ran = f"{layout.missing} run, {layout.scenes - layout.missing} known from before"
     lost = f"; {failed} could not be simulated, see the column diagnosis" if failed else ""
     return f"{layout.scenes} scenes ({ran}){lost}; results in {file} and sweep.csv"
-
-
-@contextlib.contextmanager
-def _bar(name: str, total: int | None, quiet: bool) -> Iterator[Callable[[int], None] | None]:
-    """A bar of scenes on a terminal, as a function of the number done; else None."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    with Progress(console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(name, total=total)
-        yield lambda done: progress.update(task, completed=done)
-
-
-@contextlib.contextmanager
-def _watching(layout: Layout, quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """The progress of a sweep on a terminal, as a function of the numbers done and failed."""
-    if quiet or not sys.stderr.isatty() or not layout.missing:
-        yield None
-        return
-    columns = (
-        TextColumn(layout.name),
-        BarColumn(),
-        TextColumn("{task.completed} of {task.total} scenes"),
-        TextColumn("{task.fields[failed]} failed"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, transient=True, speed_estimate_period=120) as progress:
-        task = progress.add_task(layout.name, total=layout.missing, failed=0)
-        yield lambda done, failed: progress.update(task, completed=done, failed=failed)

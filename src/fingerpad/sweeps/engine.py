@@ -28,19 +28,18 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.files import BUILT_IN, disk_is_full, locked, unusable, write_text
+from fingerpad.files import BUILT_IN, InUse, disk_is_full, locked, unusable, write_text
 from fingerpad.results import provenance
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.forecast import divided, forecast
 from fingerpad.sweeps.language import Read, load_sweep
 from fingerpad.sweeps.records import UNFINISHED, Writer, code, key_of, read_records
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 RULES = next(
     path
@@ -88,17 +87,17 @@ class Layout:
     scenes: int
     missing: int
 
-    def done(self) -> tuple[int, int]:
-        """Number of the missing scenes that have a record by now, and of these that failed."""
-        done = failed = 0
+    def done(self) -> dict[str, int]:
+        """How many of the missing scenes are ``completed``, and how many of these ``failed``."""
+        completed = failed = 0
         for name in self.batches:
             for ending in (".jsonl", UNFINISHED):
                 with contextlib.suppress(OSError):
                     text = (self.folder / "batches" / f"{name}{ending}").read_bytes()
-                    done += text.count(b"\n")
+                    completed += text.count(b"\n")
                     failed += text.count(b"\n") - text.count(b'"diagnosis": ""')
                     break
-        return done, max(failed, 0)
+        return {"completed": completed, "failed": max(failed, 0)}
 
 
 def read_layout(folder: str | Path) -> Layout:
@@ -116,7 +115,7 @@ def lay_out(
     cores: int,
     force: bool = False,
     again: bool = False,
-    progress: Callable[[int], object] | None = None,
+    progress: Callable[..., object] | None = None,
 ) -> Layout:
     """Check and plan every scene of a sweep; divide those without a record into batches.
 
@@ -133,7 +132,7 @@ def lay_out(
     again : bool
         Also run scenes again that failed before.
     progress : callable, optional
-        Called with the number of scenes that are planned.
+        Called with ``completed``, the number of scenes that are planned.
 
     Raises
     ------
@@ -159,11 +158,11 @@ def lay_out(
     if before and not again and (before.name, before.digest) == (read.name, digest):
         if all((folder / name).exists() for name in before.known):
             return before
-    expected = forecast(design, progress)
+    expected = forecast(design, progress).scenes
     known = _known_records(folder, again)
     first = {key: number for number, key in reversed(list(enumerate(keys)))}
     missing = sorted(number for key, number in first.items() if key not in known)
-    needed = sum(expected.result_bytes[n] for n in missing)
+    needed = expected.result_bytes[missing].sum()
     if folder.is_dir() and disk_is_full(folder, needed):
         raise SweepError(
             f"--out: '{folder}' has no room for about {needed / 1e6:.2g} MB of results; "
@@ -173,12 +172,12 @@ def lay_out(
     if read.base.specimen.mesh is not None:  # batches run in other folders
         base["specimen"]["mesh"] = str(read.base.specimen.mesh.absolute())
     batches = {}
-    for numbers in divided(missing, expected.cost_s, cores):
+    for numbers in divided(missing, expected.cost_s.tolist(), cores):
         name = _digest([keys[n] for n in numbers] + [again])[:12]
         batches[name] = {
             "scenes": len(numbers),
-            "cost_s": round(sum(expected.cost_s[n] for n in numbers), 3),
-            "memory_MB": round(max(expected.memory_MB[n] for n in numbers)),
+            "cost_s": round(float(expected.cost_s[numbers].sum()), 3),
+            "memory_MB": round(expected.memory_MB[numbers].max()),
         }
         scenes = [[n, keys[n], design.changes(n)] for n in numbers]
         batch = {"base": base, "keep": list(keep), "histories": histories, "scenes": scenes}
@@ -246,21 +245,20 @@ def held(folder: Path) -> Iterator[tuple[int, ...]]:
     if wrong := unusable(Path(path)) or ("braces" if set("{}") & set(path) else ""):
         raise SweepError(f"--out: '{folder}' has {wrong} in its name; allowed: a folder without")
     folder.mkdir(parents=True, exist_ok=True)
-    with contextlib.ExitStack() as stack:
-        try:
-            lock = stack.enter_context(locked(folder))
-        except BlockingIOError:
-            raise SweepError(
-                f"'{folder}' is being written by another sweep; allowed: another folder, or later"
-            ) from None
-        yield lock
+    try:
+        with locked(folder) as lock:
+            yield lock
+    except InUse:
+        raise SweepError(
+            f"'{folder}' is being written by another sweep; allowed: another folder, or later"
+        ) from None
 
 
 def run_layout(
     layout: Layout,
     cores: int,
     profile: str | None = None,
-    watch: Callable[[int, int], object] | None = None,
+    watch: Callable[..., object] | None = None,
     lock: tuple[int, ...] = (),
 ) -> None:
     """Run the batches of a sweep and collect them.
@@ -291,7 +289,7 @@ def run_layout(
     (folder / "logs").mkdir(exist_ok=True)
 
     def run(jobs: Mapping[str, list[Any]], **how: Any) -> str:
-        return _run_jobs(folder, jobs, lambda: watch and watch(*layout.done()), lock, **how)
+        return _run_jobs(folder, jobs, lambda: watch and watch(**layout.done()), lock, **how)
 
     if profile:
         problem = run({"snakemake": _snakemake(profile)}, tries=1, cwd=folder)
@@ -305,7 +303,7 @@ def run_layout(
         results = [folder, folder / "sweep.nc", folder / "sweep.csv"]
         problem = run(batches, cores=cores) or run({"collect": [*JOB, "collect", *results]})
     if problem:
-        done = layout.scenes - layout.missing + layout.done()[0]
+        done = layout.scenes - layout.missing + layout.done()["completed"]
         raise NotFinished(
             f"{done} of {layout.scenes} scenes are done and kept; {problem}; "
             "the same command goes on from there"
@@ -432,8 +430,6 @@ def sweep(
     >>> found.indentation_depth_end.values.round(2).tolist()
     [1.01, 1.21]
     """
-    import xarray as xr  # half a second, which the command does not need
-
     base = load_scene(scene)
     with contextlib.ExitStack() as stack:
         if out is None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+import pandas as pd
 
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.plan import plan
@@ -36,31 +38,25 @@ class Forecast:
 
     Attributes
     ----------
-    cost_s, memory_MB, result_bytes : list of float
-        Of each scene; the cost is of one core.
-    nodes : list of int
-        Nodes of each scene's mesh.
+    scenes : DataFrame
+        A row a scene: ``cost_s`` of one core, ``memory_MB``, ``result_bytes``, ``nodes`` of its
+        mesh, and its expected ``error``.
     effects : Counter
         Name -> number of scenes with the effect on.
-    worst_error : float
-        The largest expected error.
     """
 
-    cost_s: list[float] = field(default_factory=list)
-    memory_MB: list[float] = field(default_factory=list)
-    result_bytes: list[float] = field(default_factory=list)
-    nodes: list[int] = field(default_factory=list)
-    effects: Counter[str] = field(default_factory=Counter)
-    worst_error: float = 0.0
+    scenes: pd.DataFrame
+    effects: Counter[str]
 
     def wall_s(self, cores: int) -> float:
         """Time (s) of all scenes on some cores."""
-        batches = divided(list(range(len(self.cost_s))), self.cost_s, cores)
-        costs = [SECONDS_PROCESS + sum(self.cost_s[n] for n in batch) for batch in batches]
+        cost_s = self.scenes.cost_s.tolist()
+        batches = divided(list(range(len(cost_s))), cost_s, cores)
+        costs = [SECONDS_PROCESS + sum(cost_s[n] for n in batch) for batch in batches]
         return max(sum(costs) / cores, max(costs))
 
 
-def forecast(design: Design, progress: Callable[[int], object] | None = None) -> Forecast:
+def forecast(design: Design, progress: Callable[..., object] | None = None) -> Forecast:
     """Plan every scene.
 
     Parameters
@@ -68,14 +64,14 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
     design : Design
         The scenes.
     progress : callable, optional
-        Called with the number of scenes that are planned.
+        Called with ``completed``, the number of scenes that are planned.
 
     Raises
     ------
     SceneError
         A scene cannot be planned; one line.
     """
-    total = Forecast()
+    scenes, effects = [], Counter[str]()
     for number, scene in enumerate(design):
         try:
             chosen = plan(scene)
@@ -83,15 +79,19 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
             raise design.error(number, error) from None
         history = chosen.result_bytes(scene) if design.read.sweep.histories else 0.0
         solved = chosen.nodes * (RULES.bytes_node + RULES.bytes_step * chosen.steps)
-        total.cost_s.append(SECONDS_SCENE + chosen.predicted_cost_s - RULES.seconds_start)
-        total.memory_MB.append(MEMORY_MB + 1e-6 * solved)
-        total.result_bytes.append(RECORD_BYTES + history)
-        total.nodes.append(chosen.nodes)
-        total.effects.update(name for name, effect in chosen.effects.items() if effect.on)
-        total.worst_error = max(total.worst_error, chosen.estimated_error)
+        scenes.append(
+            {
+                "cost_s": SECONDS_SCENE + chosen.predicted_cost_s - RULES.seconds_start,
+                "memory_MB": MEMORY_MB + 1e-6 * solved,
+                "result_bytes": RECORD_BYTES + history,
+                "nodes": chosen.nodes,
+                "error": chosen.estimated_error,
+            }
+        )
+        effects.update(name for name, effect in chosen.effects.items() if effect.on)
         if progress:
-            progress(number + 1)
-    return total
+            progress(completed=number + 1)
+    return Forecast(pd.DataFrame(scenes), effects)
 
 
 def divided(numbers: list[int], cost_s: list[float], cores: int = 1) -> list[list[int]]:

@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
@@ -137,10 +137,8 @@ class Axis(Strict):
     name: str | None = None
     """What it is called in the results; left out, the last words of its key."""
 
-    @property
-    def drawn(self) -> bool:
-        """Whether its values are drawn, not listed."""
-        return False
+    drawn: ClassVar[bool] = False
+    """Whether its values are drawn, not listed."""
 
     @property
     def unit(self) -> Unit | None:
@@ -287,6 +285,7 @@ class LogNormal(Strict):
 class Distribution(Axis):
     """A distribution from which values are drawn; exactly one of uniform, normal, lognormal."""
 
+    drawn: ClassVar[bool] = True
     uniform: Pair | None = None
     """Lower and upper end."""
     normal: Normal | None = None
@@ -297,10 +296,6 @@ class Distribution(Axis):
     """Ends at which the distribution is truncated."""
     source: str | None = None
     """Where the distribution is from."""
-
-    @property
-    def drawn(self):
-        return True
 
     @property
     def unit(self):
@@ -383,7 +378,7 @@ def _axis(value: Any, info: ValidationInfo) -> Axis:
             if key not in fields:
                 what = f"is not a known key{nearest(key, fields)}"
                 raise Problem(what, allowed, (str(key)[:60],), HIDE)
-        raise Problem("does not say one thing", allowed, value=value)
+        raise Problem("is not exactly one kind of axis", allowed, value=value)
     if kinds == ["folder"] and isinstance(value["folder"], str) and info.context is not None:
         value = {**value, "folder": info.context.parent / expanded(value["folder"])}
     axis = KINDS[kinds[0]].model_validate(value, context=info.context)
@@ -539,26 +534,23 @@ class Read:
 
     @cached_property
     def names(self) -> dict[str, str]:
-        """Key -> name of the axis: the fewest last words of the key that no other key has."""
+        """Key -> name of the axis: its own, or the fewest last words of the key that tell it
+        apart.
+        """
         words = {k: k.replace("[", ".").replace("]", "").split(".") for k in self.sweep.over}
-        most = max(map(len, words.values()))
-        names = {}
-        for key, parts in words.items():
-            taken = [others for other, others in words.items() if other != key]
-            taken += [[name] for name in RESERVED]
-            # a bare number says nothing
-            counts = range(1, len(parts) + 1)
-            least = next((n for n in counts if not parts[-n].isdigit()), len(parts))
-            enough = next(
-                (
-                    n
-                    for n in range(least, most + 1)
-                    if all(others[-n:] != parts[-n:] for others in taken)
-                ),
-                most,
-            )
-            names[key] = self.sweep.over[key].name or "_".join(parts[-enough:])
-        return names
+        taken = [*words.values(), *([name] for name in RESERVED)]
+        axes = self.sweep.over.items()
+        return {key: axis.name or "_".join(_last(words[key], taken)) for key, axis in axes}
+
+
+def _last(words: list[str], taken: list[list[str]]) -> list[str]:
+    """The fewest last words that no other of ``taken`` has; a bare number says nothing."""
+    for count in range(1, len(words)):
+        last = words[-count:]
+        others = [other for other in taken if other is not words]
+        if not "".join(last).isdigit() and all(other[-count:] != last for other in others):
+            return last
+    return words
 
 
 def load_sweep(
