@@ -32,7 +32,7 @@ def check_size(scene: Scene, size: MeshSize, rules: Any) -> None:
     rows = fine / size.layer_edge + 4
     nodes = 8 * rows * (size.fine_half_width / size.skin_edge + len(size.focus))
     if nodes > rules.most_nodes:
-        key = "accuracy.skin_edge" if getattr(scene.accuracy, "skin_edge", None) else "accuracy"
+        key = "accuracy.skin_edge" if scene.by_hand.skin_edge else "accuracy"
         least = size.skin_edge * (nodes / rules.most_nodes) ** 0.5
         raise PlanError(
             f"{key}: edges of {micrometres(size.skin_edge)} um make {nodes:.2g} nodes; "
@@ -45,9 +45,7 @@ def check_memory(scene: Scene, nodes: int, steps: int, rules: Any) -> None:
     (memory, limited), receptors = _memory(), receptors_of(scene)
     needed = {
         "accuracy": nodes * rules.bytes_node,
-        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes
-        * steps
-        * rules.bytes_step,
+        "accuracy.steps" if scene.by_hand.steps else "motion": nodes * steps * rules.bytes_step,
         "outputs.receptors": receptors * (steps + 1) * _RECEPTOR_BYTES,
     }
     if nodes > rules.most_nodes:

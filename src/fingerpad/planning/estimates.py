@@ -40,9 +40,9 @@ class ContactEstimate:
     tip or a bump (None: the whole contact).
     """
 
-    half_width: float
-    depth: float
-    strain: float
+    half_width: float = 0.0
+    depth: float = 0.0
+    strain: float = 0.0
     narrowest: float | None = None
 
 

@@ -388,7 +388,7 @@ class Scene(Strict):
             if abs(offset) >= half_width:
                 side, key = f"within {widest} of the middle", ("outputs", "receptors", "offsets", i)
                 raise Problem("is beside the pad", side, key)
-        edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
+        edge = self.by_hand.skin_edge
         if edge is not None and edge >= half_width:
             raise Problem("is larger than the pad", f"below {widest}", ("accuracy", "skin_edge"))
 
@@ -400,17 +400,19 @@ class Scene(Strict):
         return end_time(self.motion)
 
     @property
+    def by_hand(self) -> Discretisation:
+        """The discretisation by hand; an empty one where the accuracy is a name or a tolerance."""
+        return self.accuracy if isinstance(self.accuracy, Discretisation) else Discretisation()
+
+    @property
     def tolerance(self) -> float | None:
         """Relative error asked for; None for a preset or a discretisation by hand."""
-        asked = (
-            self.accuracy.tolerance if isinstance(self.accuracy, Discretisation) else self.accuracy
-        )
-        return asked if isinstance(asked, float) else None
+        return self.accuracy if isinstance(self.accuracy, float) else self.by_hand.tolerance
 
     @property
     def once(self) -> bool:
         """Whether the scene is to be run once, whatever the run's own estimate of its error."""
-        return isinstance(self.accuracy, Discretisation) and self.accuracy.once
+        return self.by_hand.once
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.
