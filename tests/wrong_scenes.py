@@ -57,16 +57,11 @@ def specimen(**parts):
     return changed(specimen=parts)
 
 
-def motion(*legs):
-    return changed(motion=list(legs))
-
-
 def wavy(legs=(), **keys):
     return changed(stimulus={"shape": "wavy", **keys}, **({"motion": list(legs)} if legs else {}))
 
 
 FORCE = {"press_to_force": "20 gf", "rate": "40 gf/s"}
-DEPTH = {"press_to_depth": "1 mm", "speed": "2 mm/s"}
 
 BAD = {
     name: (change["whole"] if "whole" in change else changed(**change), key, words)

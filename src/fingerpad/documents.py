@@ -281,16 +281,3 @@ def _written_out(node: yaml.Node, known: dict[int, float]) -> float:
         parts = (part for each in inner for part in (each if isinstance(each, tuple) else (each,)))
         known[id(node)] = 1 + sum(_written_out(part, known) for part in parts)
     return known[id(node)]
-
-
-def tidy_schema(schema: Any) -> Any:
-    """A JSON schema without generated titles and nulls."""
-    if isinstance(schema, list):
-        return [tidy_schema(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    return {
-        key: tidy_schema(value)
-        for key, value in schema.items()
-        if key != "title" and (key, value) != ("default", None)
-    }
