@@ -183,12 +183,6 @@ def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
     assert "nothing slides" in lifted.effects["friction"].why
 
 
-def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
-    """Pressing with friction is a choice, and switching it off in a stroke too."""
-    assert "friction" in on(planned(ramp, friction=0.6, effects={"friction": True}))
-    assert "friction" not in on(planned(stroke, effects={"friction": False}))
-
-
 @pytest.mark.parametrize("effect", ["friction", "ridges", "viscoelasticity"])
 def test_effects_that_a_scene_cannot_have_cannot_be_switched_on(ramp, effect):
     with pytest.raises(PlanError, match=f"effects.{effect}: on, but .*; allowed: off or auto"):

@@ -31,6 +31,7 @@ from fingerpad.scenes.scene import (
     specimen_json_schema,
 )
 from fingerpad.units import parse_quantity
+from random_scenes import JUNK, at, places, usual
 from wrong_scenes import BAD, FORCE, OUTLINE, RAMP_AND_HOLD, changed, pad_folder, wavy, write
 
 pytestmark = pytest.mark.unit
@@ -451,26 +452,9 @@ def test_the_schema_sees_what_an_editor_can(name):
 
 # --- properties -----------------------------------------------------------------------------------
 
-WORDS = "1 mm,20 gf,40 gf/s,2 s,flat,thesis,auto,none,cylinder,210 1/m,-1 m".split(",")
-leaves = (
-    st.none()
-    | st.booleans()
-    | st.integers()
-    | st.floats()
-    | st.text(max_size=12)
-    | st.sampled_from(WORDS)
-)
-KEYS = """
-specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
-fillet csv friction motion press_to_force rate press_to_depth speed hold slide outputs receptors
-inner outer pitch height phase limiting period half_width stratum_corneum epidermis
-keep step every curvatures half_angle lead_in run_out
-depths offsets snapshots accuracy element skin_edge steps effects g tau fat youngs_modulus
-poisson_ratio apex_height finite_strain
-""".split()
-keys = st.sampled_from(KEYS) | st.text(max_size=5) | st.integers() | st.booleans()
+keys = st.sampled_from(sorted(usual())) | st.text(max_size=5) | st.integers() | st.booleans()
 junk = st.recursive(
-    leaves,
+    JUNK | st.sampled_from(sorted(usual().values())),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4),
     max_leaves=12,
 )
@@ -490,25 +474,11 @@ def _loads_or_says_why(path):
 
 
 @many
-@given(document=junk)
-def test_junk_is_a_scene_or_a_scene_error(folder, document):
-    _loads_or_says_why(
-        write(folder, document if isinstance(document, dict) else {"motion": document})
-    )
-
-
-@many
 @given(data=st.data())
 def test_a_scene_with_anything_in_one_place_is_a_scene_or_a_scene_error(folder, data):
     document = yaml.safe_load((CONFIG / "scenes/examples/every_key.yaml").read_text())
-    place = document
-    while True:
-        choices = list(place) if isinstance(place, dict) else range(len(place))
-        key = data.draw(st.sampled_from(list(choices)))
-        if not isinstance(place[key], (dict, list)) or not place[key] or data.draw(st.booleans()):
-            break
-        place = place[key]
-    place[key] = data.draw(junk)
+    *above, key = data.draw(st.sampled_from(list(places(document))))
+    at(document, above)[key] = data.draw(junk)
     _loads_or_says_why(write(folder, document))
 
 

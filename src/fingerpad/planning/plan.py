@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -128,7 +129,7 @@ def _planned(
     nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
 
-    surface = surface_of(case, mesh.edge)
+    surface = surface_of(case, mesh.edge, partial(worst_contact, case))
     at_edges, edges_said = edges_error(case, mesh.edge_at_edges)
     mesh_error = surface.error + max(mesh.in_contact, at_edges, mesh.at_receptors)
     left_out = {name: EFFECTS[name].left_out(case) for name in effects}
@@ -294,10 +295,11 @@ def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
         )
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
     places, friction = list(in_words(profile, corners)), case.scene.friction > 0
-    for node, angle in skin_ends(mesh.external) if mesh.external else ():
-        x = mesh.external.points[node, 0]
-        if abs(x) <= half_width and ends_unbounded(angle, friction):
-            places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
+    if mesh.external is not None:
+        for node, angle in skin_ends(mesh.external):
+            x = mesh.external.points[node, 0]
+            if abs(x) <= half_width and ends_unbounded(angle, friction):
+                places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
     near = (corners >= low - 2 * mesh.edge) & (corners <= high + 2 * mesh.edge)
     return Unbounded(tuple(places), bool(near.any()))
 

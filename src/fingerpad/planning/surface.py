@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import erf
 
 import numpy as np
 
 from fingerpad.planning.bounds import percent
-from fingerpad.planning.contact import worst_contact
 from fingerpad.planning.effect import Case
+from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.stimuli.smoothing import WAVE, finer_than
 
 _FELT_BY_NOBODY = 0.05e-6  # m
@@ -69,7 +70,7 @@ def touching_share(pressure: float, modulus: float, slope: float) -> float:
     return erf(np.sqrt(2) * pressure / (modulus * slope)) if slope else 1.0
 
 
-def surface_of(case: Case, edge: float) -> Surface:
+def surface_of(case: Case, edge: float, pressed: Callable[[float], ContactEstimate]) -> Surface:
     """How the profile comes to skin with nodes ``edge`` m apart.
 
     A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985,
@@ -78,13 +79,18 @@ def surface_of(case: Case, edge: float) -> Surface:
     the cut-offs that come into question the shortest with an error that is allowed is taken, or
     else the one with the least: a finer mesh feels finer shapes, but where they are noise it would
     only find more of it.
+
+    Parameters
+    ----------
+    pressed
+        The deepest contact with a surface of a curvature (1/m).
     """
     profile, stiff, way = case.scene.stimulus, case.pad.stiff, case.way
     if not np.isfinite(profile.known).all():
         return Surface()
     felt, curvature = profile.felt(edge), 0.0
     for _ in range(3):
-        contact = worst_contact(case, curvature)
+        contact = pressed(curvature)
         curvature = max(felt.bulge(way[0], contact.half_width), 0.0)
     half = contact.half_width
     first, last = way[0] - 1.2 * half, way[1] + 1.2 * half

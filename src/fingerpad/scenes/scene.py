@@ -340,15 +340,16 @@ class Scene(Strict):
         self._check_inside()
         outputs, end = self.outputs, self.end_time
         if outputs.responses and end == 0:
-            key, allowed = ("outputs", "responses"), "a rate, a speed or a hold in it"
-            raise Problem("needs a motion that takes time", allowed, key)
+            allowed = "a rate, a speed or a hold in it"
+            raise Problem("needs a motion that takes time", allowed, ("outputs", "responses"))
         if isinstance(outputs.snapshots, Every):
             # the model is frozen, and only here is the motion known
             times = {"snapshots": self._times(outputs.snapshots.every)}
             object.__setattr__(self, "outputs", outputs.model_copy(update=times))
         for i, time in enumerate(self.outputs.snapshots):
             if end is not None and time > end * (1 + 1e-9):
-                key, allowed = ("outputs", "snapshots", i), f"up to {format_quantity(end, 'time')}"
+                key = ("outputs", "snapshots", i)
+                allowed = f"up to {format_quantity(end, 'time')}"
                 raise Problem("is after the end of the motion", allowed, key)
         return self
 
