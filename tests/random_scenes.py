@@ -69,39 +69,33 @@ def write_files(folder: Path) -> None:
     """Profiles and meshes, good ones and bad ones, into a folder."""
     x = np.linspace(-5e-3, 5e-3, 801)
     for name, height in PROFILES.items():
-        rows = "\n".join(f"{a:.6g},{b:.6g}" for a, b in 1e3 * np.column_stack([x, height(x)]))
-        (folder / name).write_text(f"x (mm),y (mm)\n{rows}\n")
+        _write_table(folder / name, "x (mm),y (mm)", 1e3 * np.column_stack([x, height(x)]))
     for name, (header, most) in MOTIONS.items():
-        at = np.linspace(0, 1, 60) * (1e3 if "ms" in header else 1.0)
-        rows = np.column_stack([at, most * np.minimum(np.linspace(0, 2, 60), 1)])
-        np.savetxt(
-            folder / name,
-            rows,
-            delimiter=";" if ";" in header else ",",
-            header=header,
-            comments="",
-            fmt="%.5g",
-        )
+        time = np.linspace(0, 1, 60) * (1e3 if "ms" in header else 1.0)
+        values = most * np.minimum(np.linspace(0, 2, 60), 1)
+        _write_table(folder / name, header, np.column_stack([time, values]))
     for name, text in WRONG_PROFILES.items():
         (folder / name).write_text(text)
-    scene = load_scene(
-        {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}], "accuracy": "draft"}
-    )
-    mesh = build_pad_mesh(
-        scene.specimen.outline, replace(plan(scene).mesh_size, skin_edge=4e-4, layer_edge=4e-4)
-    )
+    press = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}]}
+    scene = load_scene(press | {"accuracy": "draft"})
+    size = replace(plan(scene).mesh_size, skin_edge=4e-4, layer_edge=4e-4)
+    mesh = build_pad_mesh(scene.specimen.outline, size)
     write_pad(mesh, folder / "quad9.msh")
     for kind in ("quad4", "tri6"):
         write_pad(split(mesh, kind), folder / f"{kind}.msh")
-    write_pad(
-        replace(mesh, points=mesh.points + [3e-4, 0.0], symmetric=False), folder / "aside.msh"
-    )
+    aside = replace(mesh, points=mesh.points + [3e-4, 0.0], symmetric=False)
+    write_pad(aside, folder / "aside.msh")
     whole = (folder / "quad9.msh").read_text()
+    head, nodes = whole.split("$Nodes", 1)
     (folder / "cut.msh").write_text(whole[: len(whole) // 2])
     (folder / "text.msh").write_text("not a mesh\n")
-    head, nodes = whole.split("$Nodes", 1)
     (folder / "nan.msh").write_text(head + "$Nodes" + nodes.replace("0 0\n", "nan 0\n", 40))
     assert read_pad_mesh(folder / "aside.msh").symmetric is False
+
+
+def _write_table(path: Path, header: str, rows: np.ndarray) -> None:
+    delimiter = ";" if ";" in header else ","
+    np.savetxt(path, rows, delimiter=delimiter, header=header, comments="", fmt="%.6g")
 
 
 # --- values of the types of a schema --------------------------------------------------------------
@@ -117,23 +111,23 @@ def _leaves(document):
 @cache
 def usual():
     """Key -> a value it is likely to have."""
-    found = {}
-    for file in ("scenes/examples/every_key.yaml", "specimens/thesis.yaml"):
-        found |= {
-            key: value
-            for key, value in _leaves(yaml.safe_load((CONFIG / file).read_text()))
-            if isinstance(value, str)
-        }
-    return found | {
-        "thickness": "1.5 mm",
-        "width": "2 mm",
-        "radius": "8 mm",
-        "diameter": "8 mm",
-        "skin_edge": "0.3 mm",
-        "every": "0.2 s",
-    }
+    found = yaml.safe_load("""
+        thickness: 1.5 mm
+        width: 2 mm
+        radius: 8 mm
+        diameter: 8 mm
+        skin_edge: 0.3 mm
+        every: 0.2 s
+    """)
+    for file in ("specimens/thesis.yaml", "scenes/examples/every_key.yaml"):
+        leaves = _leaves(yaml.safe_load((CONFIG / file).read_text()))
+        found = {key: value for key, value in leaves if isinstance(value, str)} | found
+    return found
 
 
+SPECIMENS = ("thesis", "homogeneous", "calibrated_subject_1")
+LAYERS = ("cover", "foam", "base", "skin", "epidermis", "none")
+ONE_IN_FOUR = st.integers(0, 3).map(lambda n: n == 3)
 FACTORS = st.one_of(*4 * [st.floats(-0.4, 0.4)], st.floats(-3, 3))
 
 
@@ -146,13 +140,9 @@ def quantities(draw, like):
 
 
 def _quantity(key, example):
-    like = usual().get(key, example)
-    try:
-        if unit_of(like) and unit_of(like)[-1:] == unit_of(example)[-1:]:
-            return quantities(like)
-    except QuantityError:
-        pass
-    return quantities(example)
+    like, unit = usual().get(key, example), _unit(example)
+    known = _unit(like)
+    return quantities(like if known and known[-1:] == unit[-1:] else example)
 
 
 def values(schema, defs, key=""):
@@ -179,33 +169,26 @@ def values(schema, defs, key=""):
     if kind == "integer":
         return st.integers(schema.get("minimum", 0), min(schema.get("maximum", 40), 40))
     if kind == "number":
-        low, high = (
-            schema.get("exclusiveMinimum", schema.get("minimum", -10)),
-            schema.get("exclusiveMaximum", schema.get("maximum", 10)),
-        )
+        low = schema.get("exclusiveMinimum", schema.get("minimum", -10))
+        high = schema.get("exclusiveMaximum", schema.get("maximum", 10))
         return st.floats(low, high).map(lambda value: float(f"{value:.3g}"))
     if "examples" in schema and isinstance(schema["examples"][0], str):
         return _quantity(key, schema["examples"][0])
-    if kind == "string" and "name in config/specimens" in schema.get("description", ""):
-        return st.sampled_from(["thesis", "homogeneous", "calibrated_subject_1"])
     if kind == "string" and "%" in schema.get("pattern", ""):
         return st.floats(0, 1).map(lambda value: f"{value:.3g}")
     if kind == "string":
-        return st.sampled_from(["cover", "foam", "base", "skin", "epidermis", "none"])
+        named = "name in config/specimens" in schema.get("description", "")
+        return st.sampled_from(SPECIMENS if named else LAYERS)
     return st.none() | st.integers() | st.text(max_size=5)
 
 
 @st.composite
 def _objects(draw, schema, defs):
+    choices = [key for each in schema.get("oneOf", ()) for key in each.get("required", ())]
+    wanted = {*schema.get("required", ()), *([draw(st.sampled_from(choices))] if choices else ())}
     found = {}
-    one_of = [key for each in schema.get("oneOf", ()) for key in each.get("required", ())]
-    taken = draw(st.sampled_from(one_of)) if one_of else None
     for key, inner in schema.get("properties", {}).items():
-        if (
-            key == taken
-            or key in schema.get("required", ())
-            or (key not in one_of and draw(st.integers(0, 3)) == 3)
-        ):
+        if key in wanted or (key not in choices and draw(ONE_IN_FOUR)):
             found[key] = draw(values(inner, defs, key))
     more = schema.get("additionalProperties")
     if isinstance(more, dict) and not found:
@@ -215,13 +198,8 @@ def _objects(draw, schema, defs):
 
 # --- documents ------------------------------------------------------------------------------------
 
-STEADY = {"press_to_force": "10 gf"}
+SCHEMA = scene_json_schema()
 PARTS = ("specimen", "friction", "outputs", "accuracy", "effects")
-
-
-@cache
-def _scene_schema():
-    return scene_json_schema()
 
 
 @st.composite
@@ -229,7 +207,7 @@ def scenes(draw):
     """A scene that is likely to be right: a shape, a press and legs after it, and now and then any
     other part.
     """
-    schema = _scene_schema()
+    schema = SCHEMA
     defs, parts = schema["$defs"], schema["properties"]
     shapes = [name for name, model in defs.items() if "shape" in model.get("required", ())]
     scene = {"stimulus": draw(values(defs[draw(st.sampled_from(sorted(shapes)))], defs))}
@@ -238,47 +216,33 @@ def scenes(draw):
     later = values(listed["items"], defs, "motion")
     scene["motion"] = [first, *draw(st.lists(later, max_size=3))]
     for part in PARTS:
-        if draw(st.integers(0, 3)) == 3:
+        if draw(ONE_IN_FOUR):
             scene[part] = draw(values(parts[part], defs, part))
     return Drawn(scene["stimulus"]["shape"], scene)
 
 
-JUNK = st.one_of(
-    st.none(),
-    st.booleans(),
-    st.integers(),
-    st.floats(),
-    st.text(max_size=8),
-    st.just([]),
-    st.just({}),
-    st.just(10**400),
-    st.sampled_from(
-        [
-            "1 mm",
-            "-20 gf",
-            "0 s",
-            "1e400 mm",
-            "nan mm",
-            "../../x",
-            "/dev/zero",
-            "a\nb",
-            "\0",
-            "5 parsecs",
-            "thesis",
-        ]
-    ),
+TEXTS = ["1 mm", "-20 gf", "0 s", "1e400 mm", "nan mm", "5 parsecs", "thesis"]
+TEXTS += ["../../x", "/dev/zero", "a\nb", "\0"]
+JUNK = (
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=8)
+    | st.builds(list)
+    | st.builds(dict)
+    | st.just(10**400)
+    | st.sampled_from(TEXTS)
 )
 
 
 def places(document, path=()):
     """The paths to everything in a document."""
-    for key, value in (
-        document.items()
-        if isinstance(document, dict)
-        else enumerate(document)
-        if isinstance(document, list)
-        else ()
-    ):
+    if isinstance(document, dict):
+        items = document.items()
+    else:
+        items = enumerate(document) if isinstance(document, list) else ()
+    for key, value in items:
         yield (*path, key)
         yield from places(value, (*path, key))
 
@@ -317,35 +281,23 @@ def broken(draw):
 def sweeps(draw):
     """A sweep over one or two quantities of a scene, in few values."""
     scene = draw(scenes()).document
-    known = [
-        path
-        for path in places(scene)
-        if isinstance(at(scene, path), str) and _unit(at(scene, path))
-    ]
-    defs = sweep_json_schema()["$defs"]
-    over = {}
-    for path in (
-        draw(st.lists(st.sampled_from(known), min_size=1, max_size=2, unique=True)) if known else ()
-    ):
+    known = [path for path in places(scene) if _unit(at(scene, path))]
+    some = st.lists(st.sampled_from(known), min_size=1, max_size=2, unique=True)
+    distribution = sweep_json_schema()["$defs"]["Distribution"]
+    document = {"scene": scene, "over": {}}
+    for path in draw(some) if known else ():
         like = at(scene, path)
         key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
         kind = draw(st.sampled_from(["values", "range", "Distribution"]))
         if kind == "values":
-            over[key] = draw(st.lists(quantities(like), min_size=1, max_size=3))
+            axis = draw(st.lists(quantities(like), min_size=1, max_size=3))
         elif kind == "range":
-            over[key] = {
-                "range": draw(st.lists(quantities(like), min_size=2, max_size=2)),
-                "count": draw(st.integers(2, 3)),
-            }
+            ends = draw(st.lists(quantities(like), min_size=2, max_size=2))
+            axis = {"range": ends, "count": draw(st.integers(2, 3))}
         else:
-            over[key] = _in_units(draw(values(defs["Distribution"], defs)), like)
-    document = {"scene": scene, "over": over}
-    if any(
-        "values" not in axis and "range" not in axis
-        for axis in over.values()
-        if isinstance(axis, dict)
-    ):
-        document |= {"design": "sobol", "samples": 2}
+            axis = _in_units(draw(values(distribution, sweep_json_schema()["$defs"])), like)
+            document |= {"design": "sobol", "samples": 2}
+        document["over"][key] = axis
     return Drawn("sweep", document)
 
 
@@ -360,8 +312,9 @@ def _in_units(part, like):
 
 
 def _unit(text):
+    """The unit of a quantity; none of anything else."""
     try:
-        return unit_of(text)
+        return unit_of(text) if isinstance(text, str) else ""
     except QuantityError:
         return ""
 

@@ -4,12 +4,17 @@ steps they say.
 
 import json
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 
 import synthetic
 from cysyk1999.figures import axes as axs
@@ -52,6 +57,20 @@ def outputs(values, time, leg=None) -> xr.Dataset:
     return xr.Dataset({"value": ("time", values), "leg": ("time", leg)}, {"time": time})
 
 
+def two_columns(history):
+    return history["time"].values, history["value"].values
+
+
+def left_out(curve, at):
+    """What straight lines between its values at some places leave out of a curve."""
+    fine = np.linspace(at[0], at[-1], 40001)
+    return norm(fine, curve(fine) - np.interp(fine, at, curve(at)))
+
+
+def root_mean_square(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
 VALUE = over_time(lambda history: history["value"].values)
 
 
@@ -64,14 +83,12 @@ def test_sampling_error_is_what_straight_lines_leave_out(shape, even):
     """On average over places where a curve bends or jumps about as large; of a smooth curve
     always.
     """
-    time = np.linspace(0, 1, 41) ** (1 if even else 1.5)
-    fine, found, true = np.linspace(0, 1, 40001), [], []
+    time, found, true = np.linspace(0, 1, 41) ** (1 if even else 1.5), [], []
     for at in np.random.default_rng(4).uniform(0.3, 0.7, 60):
-        values = SHAPES[shape](time, at)
-        found.append(sampling(outputs(values, time), VALUE))
-        true.append(norm(fine, SHAPES[shape](fine, at) - np.interp(fine, time, values)))
-    found, true = np.array(found), np.array(true)
-    assert 0.8 < np.sqrt(np.mean(found**2) / np.mean(true**2)) < 1.6
+        curve = partial(SHAPES[shape], at=at)
+        found.append(sampling(outputs(curve(time), time), VALUE))
+        true.append(left_out(curve, time))
+    assert 0.8 < root_mean_square(found) / root_mean_square(true) < 1.6
     if shape == "smooth":
         assert found == pytest.approx(true, rel=0.15)
 
@@ -79,36 +96,26 @@ def test_sampling_error_is_what_straight_lines_leave_out(shape, even):
 @pytest.mark.parametrize("nodes", [9, 10, 14, 31])
 def test_profile_of_a_contact_of_a_few_nodes_is_drawn_with_the_error_it_has(nodes):
     """A half ellipse, wherever its nodes lie: about as large on average, and never a multiple."""
-    fine, found, true = np.linspace(-2, 2, 40001), [], []
-    pressure = lambda x: np.sqrt(np.clip(1 - x**2, 0, None))  # noqa: E731
+    found, true, profile = [], [], Curve(two_columns, outputs=False)
+
+    def pressure(x):
+        return np.sqrt(np.clip(1 - x**2, 0, None))
+
     for shift in np.linspace(0, 1, 12, endpoint=False):
         x = (np.arange(-2 * nodes, 2 * nodes) + shift) / (nodes / 2)
         x = x[abs(x) <= 2]
-        profile = Curve(
-            lambda history: (history["time"].values, history["value"].values), outputs=False
-        )
         found.append(sampling(outputs(pressure(x), x), profile))
-        true.append(norm(fine, pressure(fine) - np.interp(fine, x, pressure(x))))
-    ratio = np.array(found) / np.array(true)
-    assert (
-        0.7 < np.sqrt(np.mean(np.square(found)) / np.mean(np.square(true))) < 1.6
-        and ratio.max() < 3
-    ), ratio
+        true.append(left_out(pressure, x))
+    assert 0.7 < root_mean_square(found) / root_mean_square(true) < 1.6
+    assert (np.array(found) / np.array(true)).max() < 3
 
 
 def test_sampling_error_falls_by_the_order_of_the_curve():
-    def errors(shape):
-        return [
-            sampling(outputs(SHAPES[shape](t, 0.43), t), VALUE)
-            for t in (np.linspace(0, 1, n) for n in (41, 81, 161))
-        ]
-
-    smooth = np.array(errors("smooth"))
-    assert smooth[:-1] / smooth[1:] == pytest.approx(4, rel=0.05)
-    assert (
-        sampling(outputs(np.linspace(0, 3, 21), np.linspace(0, 1, 21)), VALUE) == 0
-    )  # a straight line
-    assert sampling(outputs(np.ones(9), np.linspace(0, 1, 9)), VALUE) == 0
+    times = [np.linspace(0, 1, n) for n in (41, 81, 161)]
+    smooth = [sampling(outputs(SHAPES["smooth"](t, 0.43), t), VALUE) for t in times]
+    assert [rough / fine for rough, fine in pairwise(smooth)] == pytest.approx([4, 4], rel=0.05)
+    for straight in (3 * times[0], np.ones(41)):
+        assert sampling(outputs(straight, times[0]), VALUE) == 0
 
 
 def test_a_kink_between_legs_is_no_sampling_error():
@@ -126,9 +133,7 @@ def test_rates_made_of_differences_of_outputs_are_wrong_at_the_outputs_too():
     """
 
     def rates(history):
-        t, _, rate = rate_by_leg(
-            history["time"].values, history["value"].values, history["leg"].values
-        )
+        t, _, rate = rate_by_leg(*two_columns(history), history["leg"].values)
         return t, rate
 
     time, fine = np.linspace(0, 1, 41), np.linspace(0, 1, 4001)
@@ -155,49 +160,42 @@ def test_each_part_is_found_alone(alone):
     size = {"mesh": 0.3 * (alone == "mesh"), "steps": 0.2 * (alone == "steps")}
     rough = 0.1 * COARSER
     run, coarse, both = (
-        solved(0.1, 0.02, **size),
-        solved(rough, 0.02, **size),
-        solved(rough, 0.04, **size),
+        solved(h, dt, **size) for h, dt in ((0.1, 0.02), (rough, 0.02), (rough, 0.04))
     )
     found = curve_errors(run, Companion(coarse, both), VALUE)
-    x = run["time"].values
-    share = 100 / norm(x, run["value"].values)
-    true = norm(x, 0.3 * 0.1**2 * np.cos(x)) * share, norm(x, 0.2 * 0.02 * x) * share
+    x, values = two_columns(run)
+    mesh, steps = (
+        100 * norm(x, part) / norm(x, values)
+        for part in (size["mesh"] * 0.1**2 * np.cos(x), size["steps"] * 0.02 * x)
+    )
     # of order 2, where 3/2 is taken: half as much again as is left; order 1: half
-    assert found.mesh == pytest.approx(
-        REMAINS * (COARSER**2 - 1) * true[0] if alone == "mesh" else 0, abs=1e-9
-    )
-    assert found.steps == pytest.approx(
-        STEPS_REMAIN * true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9
-    )
-    assert 0 < found.sampling < 1 and found.total == pytest.approx(
-        found.mesh + found.steps + found.sampling
-    )
+    assert found.mesh == pytest.approx(REMAINS * (COARSER**2 - 1) * mesh, abs=1e-9)
+    assert found.steps == pytest.approx(STEPS_REMAIN * steps, rel=0.02, abs=1e-9)
+    assert 0 < found.sampling < 1
+    assert found.total == pytest.approx(found.mesh + found.steps + found.sampling)
     first = curve_errors(run, Companion(coarse, both), replace(VALUE, order=1.0)).mesh
     assert first == pytest.approx(found.mesh * 2 / REMAINS), (
         "of first order as much is left as half as long edges change"
     )
     rate = Curve(lambda h: (h["time"].values, np.gradient(h["value"].values, h["time"].values)))
-    assert (
-        curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9
-    )  # fewer outputs are not fewer steps
+    fewer = curve_errors(run, Companion(coarse, thinned(coarse)), rate)
+    assert fewer.steps < 1e-9, "fewer outputs are not fewer steps"
     if alone != "neither":  # mutant: one companion for both parts tells them apart no longer
         mixed = curve_errors(run, Companion(both, both), VALUE)
-        assert (mixed.mesh > 0.1) and mixed.steps == 0
+        assert mixed.mesh > 0.1 and mixed.steps == 0
 
 
 def test_of_several_curves_the_one_furthest_off_counts_and_numbers_are_compared_as_they_are():
+    def last(history):
+        return float(history["value"][-1])
+
     run, coarse, both = solved(0.1, 0.02), solved(0.2, 0.02), solved(0.2, 0.04)
-    last = lambda history: float(history["value"][-1])  # noqa: E731
     found = number_errors(run, Companion(coarse, both), last, lambda history: 1.0)
-    own = abs(last(run))
-    assert found.mesh == pytest.approx(REMAINS * 100 * abs(last(run) - last(coarse)) / own)
-    assert (
-        found.steps == pytest.approx(STEPS_REMAIN * 100 * abs(last(both) - last(coarse)) / own)
-        and found.sampling == 0
-    )
-    peak = lambda history: float(history["value"].max())  # noqa: E731
-    assert number_errors(run, None, peak).sampling >= 0
+    end, of_mesh, of_steps = map(last, (run, coarse, both))
+    assert found.mesh == pytest.approx(REMAINS * 100 * abs((end - of_mesh) / end))
+    assert found.steps == pytest.approx(STEPS_REMAIN * 100 * abs((of_steps - of_mesh) / end))
+    assert found.sampling == 0
+    assert number_errors(run, None, lambda h: float(h["value"].max())).sampling >= 0
     assert curve_errors(run, Companion(run, run), VALUE, VALUE).mesh == 0
 
 
@@ -262,32 +260,27 @@ def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, 
     """
 
     def made(h, nodes):
-        run = solved(h, 0.02, 0.3, 0.0)
-        size = {"skin_edge": h}
-        return run.assign_attrs(
-            plan=json.dumps(
-                {"discretisation": {"nodes": nodes, "element": "Q2P1"}, "mesh_size_SI": size}
-            )
-        )
+        planned = {"nodes": nodes, "element": "Q2P1"}
+        text = json.dumps({"discretisation": planned, "mesh_size_SI": {"skin_edge": h}})
+        return solved(h, 0.02, 0.3, 0.0).assign_attrs(plan=text)
+
+    def first(history):
+        return float(history["value"][0])
 
     run, other = made(0.1, 10000), made(0.11, nodes)
-    pair, value = Companion(other, thinned(other)), replace(VALUE, order=order)
-    change = 100 * norm(run["time"].values, run["value"].values - other["value"].values)
-    change /= norm(run["time"].values, run["value"].values)
-    found, first = curve_errors(run, pair, value).mesh, (lambda history: float(history["value"][0]))
+    pair = Companion(other, thinned(other))
+    found = curve_errors(run, pair, replace(VALUE, order=order)).mesh
     if nodes == 10000:
         assert np.isnan(found), "as fine: it tells nothing"
         return
-    left = 1 / ((10000 / nodes) ** (order / 2) - 1)
-    assert found == pytest.approx(left * change)
-    number = 100 * abs(first(run) - first(other)) / abs(first(run))
-    assert number_errors(run, pair, first).mesh == pytest.approx(
-        number / ((10000 / nodes) ** (ORDER / 2) - 1)
-    )
-    fewer = Companion(made(0.1, 100 * nodes), other)  # a finer run in its place
-    assert fewer.remains(run, order) == pytest.approx(
-        1 / (1 - (10000 / (100 * nodes)) ** (order / 2))
-    )
+    x, values = two_columns(run)
+    ratio = (10000 / nodes) ** 0.5
+    change = 100 * norm(x, values - other["value"].values) / norm(x, values)
+    assert found == pytest.approx(change / (ratio**order - 1))
+    change = 100 * abs(1 - first(other) / first(run))
+    assert number_errors(run, pair, first).mesh == pytest.approx(change / (ratio**ORDER - 1))
+    finer = Companion(made(0.1, 100 * nodes), other)
+    assert finer.remains(run, order) == pytest.approx(1 / (1 - (ratio / 10) ** order))
 
 
 # --- companions -----------------------------------------------------------------------------------
@@ -303,32 +296,22 @@ def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
     mesh, both = companion(scene, own), companion(scene, own, 2)
     assert mesh.mesh_size == both.mesh_size and mesh.effects == both.effects == own.effects
     assert mesh.mesh_size.skin_edge == COARSER * own.mesh_size.skin_edge
-    assert [edge for _, edge in mesh.mesh_size.focus] == [
-        COARSER * edge for _, edge in own.mesh_size.focus
-    ]
+    (_, coarse), (_, fine) = (np.array(p.mesh_size.focus).reshape(-1, 2).T for p in (mesh, own))
+    np.testing.assert_array_equal(coarse, COARSER * fine)
     every, second = (list(schedule(scene, *each.stepping)) for each in (mesh, both))
-    assert every == list(schedule(scene, *own.stepping)) and (mesh.outputs, both.outputs) == (
-        len(every),
-        len(second),
-    )
-    pressed_anew = any(leg.fresh for leg in scene.motion)
-    told = xr.Dataset(
-        {"leg": ("time", [0, *(step.leg for step in every)])}, {"time": np.arange(len(every) + 1)}
-    )
-    kept = thinned(told)["time"].values[1:] - 1
-    expected = (
-        [every[k] for k in kept]
-        if not pressed_anew
-        else [step for step in every if step.fresh or step.leg == 0]
-    )
-    assert [(s.leg, s.distance, s.force, s.depth) for s in second] == [
-        (s.leg, s.distance, s.force, s.depth) for s in expected
-    ]
+    assert every == list(schedule(scene, *own.stepping))
+    assert (mesh.outputs, both.outputs) == (len(every), len(second))
+    if any(leg.fresh for leg in scene.motion):  # pressed anew
+        expected = [step for step in every if step.fresh or step.leg == 0]
+    else:
+        legs = [0, *(step.leg for step in every)]
+        told = xr.Dataset({"leg": ("time", legs)}, {"time": np.arange(len(legs))})
+        expected = [every[k - 1] for k in thinned(told)["time"].values[1:]]
+    what = attrgetter("leg", "distance", "force", "depth")
+    assert list(map(what, second)) == list(map(what, expected))
     assert [s.time for s in second] == pytest.approx([s.time for s in expected])
-    steady = 1e8
-    assert sum(s.dt for s in second if s.dt < steady) == pytest.approx(
-        sum(s.dt for s in every if s.dt < steady)
-    )
+    lasting = [sum(s.dt for s in steps if s.dt < 1e8) for steps in (second, every)]
+    assert lasting[0] == pytest.approx(lasting[1])
 
 
 def test_a_companion_passes_twice_the_way_and_no_coarser_events():
@@ -357,18 +340,13 @@ def test_companions_of_a_press_find_its_errors():
         "press",
     )
     own = plan(scene)
-    run, mesh, both = (
-        simulate(scene, how) for how in (own, companion(scene, own), companion(scene, own, 2))
-    )
-    found = curve_errors(run, Companion(mesh, both), over_time(width))
+    plans = own, companion(scene, own), companion(scene, own, 2)
+    run, mesh, both = (simulate(scene, each) for each in plans)
     truth = simulate(scene, companion(scene, own, coarser=0.4))
-    true = (
-        norm(run["time"].values, width(run) - width(truth))
-        / norm(run["time"].values, width(run))
-        * 100
-    )
+    found, time = curve_errors(run, Companion(mesh, both), over_time(width)), run["time"].values
+    true = 100 * norm(time, width(run) - width(truth)) / norm(time, width(run))
     assert 0.7 * true < found.mesh < 2.5 * true and found.mesh > found.steps
-    assert both.sizes["time"] == 1 + 8 and set(both["time"].values) <= set(run["time"].values)
+    assert both.sizes["time"] == 1 + 8 and set(both["time"].values) <= set(time)
 
 
 # --- pictures -------------------------------------------------------------------------------------
@@ -382,48 +360,33 @@ def _rows(mesh=1.0, steps=0.5, sampled=0.1):
 
 
 def test_errors_above_two_per_cent_are_drawn_as_a_band_as_high_as_they_are():
-    from matplotlib.figure import Figure
-
     ax = Figure().add_subplot()
     line = axs.curve(ax, _rows(), "x (mm)", "y (Pa)", color="C3")
     assert not ax.collections  # 1.6 %
     axs.curve(ax, _rows(mesh=3.4), "x (mm)", "y (Pa)", color="C3")
     (band,) = ax.collections
-    high = band.get_paths()[0].vertices[:, 1]
-    assert (high.min(), high.max()) == pytest.approx((192, 208)) and band.get_facecolor()[
-        0, 3
-    ] < 0.3
-    assert line.get_color() == "C3" and (
-        band.get_facecolor()[0, :3] == pytest.approx((0.839, 0.153, 0.157), abs=0.01)
-    )
+    high, (*colour, opacity) = band.get_paths()[0].vertices[:, 1], band.get_facecolor()[0]
+    assert (high.min(), high.max()) == pytest.approx((192, 208)) and opacity < 0.3
+    assert line.get_color() == "C3" and colour == pytest.approx(to_rgb("C3"), abs=0.01)
 
 
 def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_decide_it():
     """Mutant: the furthest line of all says that next to nothing is wrong by as much as it is."""
     size = 1000.0
 
-    def line(share):
-        return over_time(
-            lambda history: share * history["value"].values + (1 - share) * history["beside"].values
-        )
-
     def two(h, dt):
         return solved(h, dt, 0.3, 0.0).assign(beside=solved(h, dt, size * 0.3, 0.0)["value"] / size)
 
     run, other = two(0.1, 0.02), Companion(two(0.1 * COARSER, 0.02), two(0.1 * COARSER, 0.04))
-    strong, weak = line(1.0), line(0.0)
-    alone, family = (
-        curve_errors(run, other, strong).mesh,
-        family_errors(run, other, [strong, weak]).mesh,
+    strong, weak, flat = (
+        over_time(lambda history, name=name, share=share: share * history[name].values)
+        for name, share in (("value", 1.0), ("beside", 1.0), ("beside", 1e-9))
     )
-    sizes = [norm(*strong(run)), norm(*weak(run))]
-    truth = np.linalg.norm(
-        [alone * sizes[0], curve_errors(run, other, weak).mesh * sizes[1]]
-    ) / np.linalg.norm(sizes)
-    assert family == pytest.approx(truth) and family_errors(
-        run, other, [strong]
-    ).mesh == pytest.approx(alone)
-    flat = over_time(lambda history: 1e-9 * history["beside"].values)
+    alone, beside = (curve_errors(run, other, line).mesh for line in (strong, weak))
+    sizes = [norm(*line(run)) for line in (strong, weak)]
+    truth = np.linalg.norm(np.array([alone, beside]) * sizes) / np.linalg.norm(sizes)
+    assert family_errors(run, other, [strong, weak]).mesh == pytest.approx(truth)
+    assert family_errors(run, other, [strong]).mesh == pytest.approx(alone)
     assert family_errors(run, other, [strong, flat]).mesh == pytest.approx(alone, rel=1e-6)
     assert np.isnan(family_errors(run, None, [strong]).mesh)
 

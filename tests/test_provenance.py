@@ -22,6 +22,10 @@ def test_figures_rest_on_laws_of_receptors_and_not_on_mechanics():
     }
 
 
+def test_data_of_a_module_s_name_count_as_the_module():
+    assert "planning/rules.yaml" in names("fingerpad.planning.rules")
+
+
 def test_a_verb_of_the_package_brings_what_it_runs():
     assert {"mechanics/stepping.py", "fingerpad/simulation.py"} <= names(
         "cysyk1999.workflow.simulate"
@@ -31,8 +35,9 @@ def test_a_verb_of_the_package_brings_what_it_runs():
 def test_the_digest_follows_names_and_contents(tmp_path):
     (tmp_path / "a.py").write_text("1")
     seen = {code_digest(tmp_path)}
-    for name, text in (("b.py", "2"), ("b.py", "3"), ("a.py", "1"), ("notes.txt", "4")):
+    files = {"b.py": "2", "notes.txt": "4", "notes.yaml": "5", "a.py": "1"}
+    for name, text in [*files.items(), ("b.py", "3"), ("b.yaml", "6")]:
         (tmp_path / name).write_text(text)
         code_digest.cache_clear()
         seen.add(code_digest(tmp_path))
-    assert len(seen) == 3
+    assert len(seen) == 4

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 
 from cysyk1999.studies.common.documents import FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import split
@@ -12,7 +13,7 @@ from fingerpad import simulation
 from fingerpad.cli import _error_line, main
 from fingerpad.planning.estimates import PadEstimate
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan, read_plan, refined
-from fingerpad.results import summary
+from fingerpad.results import read_history, summary
 from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.build import build_pad_mesh
@@ -27,8 +28,21 @@ BAR = {"shape": "bar", "width": "1 mm"}
 ROUNDED = BAR | {"fillet": "0.1 mm"}
 
 
+RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}]
+SLIDE = {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"}
+RIDGED = {"specimen": {"ridges": "inner"}}
+
+
 def scene(stimulus=FLAT, motion=PRESS, **more):
     return scene_of({"stimulus": stimulus, "motion": motion, **more}, "tried")
+
+
+def planned(*parts, **more):
+    return plan(scene(*parts, **more))
+
+
+def receptors(depths, offsets):
+    return {"outputs": {"receptors": {"depths": depths, "offsets": offsets}}}
 
 
 # -- what the contact is ---------------------------------------------------------------------------
@@ -80,45 +94,30 @@ def test_tolerance_is_planned_for_what_touches(stimulus):
     """The face, the tip and the rounding decide on the mesh, not the plate's contact; in 4 times
     less error, finer edges.
     """
-    rough, good = (plan(scene(stimulus, accuracy=accuracy)) for accuracy in (0.08, 0.02))
+    rough, good = (planned(stimulus, accuracy=accuracy) for accuracy in (0.08, 0.02))
     assert rough.estimated_error <= 0.08 * 1.001 and good.estimated_error <= 0.02 * 1.001
     assert rough.missed() is good.missed() is None
     assert good.smallest_edge < 0.8 * rough.smallest_edge and good.nodes > rough.nodes
-    assert plan(scene(stimulus, accuracy="thesis")).missed(9.0) is None
+    assert planned(stimulus, accuracy="thesis").missed(9.0) is None
 
 
 def test_ridges_do_not_hide_the_edge_of_a_bar():
     """The mesh under a filleted bar on a ridged pad is as fine at the fillet as on a smooth one."""
-    ridged = plan(scene(ROUNDED, accuracy=0.05, specimen={"ridges": "inner"}))
+    ridged, smooth = (planned(ROUNDED, accuracy=0.05, **pad) for pad in (RIDGED, {}))
     assert ridged.effects["ridges"].on and ridged.estimated_error <= 0.05 * 1.001
-    smooth = plan(scene(ROUNDED, accuracy=0.05))
-    assert min(e for _, e in ridged.mesh_size.focus) == pytest.approx(
-        min(e for _, e in smooth.mesh_size.focus), rel=0.5
-    )
+    finest, expected = (min(e for _, e in p.mesh_size.focus) for p in (ridged, smooth))
+    assert finest == pytest.approx(expected, rel=0.5)
 
 
 def test_ridged_pads_are_refined_under_the_contact():
     """One per cent is met with fewer than 20,000 nodes; on half of them the press is within two per
     cent of that.
     """
-    ramp = [{"press_to_force": "20 gf", "rate": "40 gf/s"}]
-    fine, rough = (
-        plan(scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}))
-        for a in (0.01, 0.02)
-    )
-    assert (
-        fine.effects["ridges"].on
-        and fine.estimated_error <= 0.01
-        and fine.nodes < 20_000
-        and rough.nodes < 0.6 * fine.nodes
-    )
-    last = [
-        simulate(chosen_scene, chosen).isel(time=-1)
-        for chosen_scene, chosen in (
-            (scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}), p)
-            for a, p in ((0.01, fine), (0.02, rough))
-        )
-    ]
+    scenes = [scene(cylinder(209.97), RAMP, accuracy=error, **RIDGED) for error in (0.01, 0.02)]
+    fine, rough = plans = [plan(each) for each in scenes]
+    assert fine.effects["ridges"].on and fine.estimated_error <= 0.01
+    assert fine.nodes < 20_000 and rough.nodes < 0.6 * fine.nodes
+    truth, last = (simulate(*each).isel(time=-1) for each in zip(scenes, plans, strict=True))
     for name in (
         "indentation_depth",
         "contact_width",
@@ -126,63 +125,39 @@ def test_ridged_pads_are_refined_under_the_contact():
         "centre_pressure",
         "strain_energy_density",
     ):
-        np.testing.assert_allclose(last[1][name], last[0][name], rtol=0.02, err_msg=name)
+        np.testing.assert_allclose(last[name], truth[name], rtol=0.02, err_msg=name)
 
 
 def test_ridges_are_refined_where_receptors_are_beside_them():
     """The wider the contact the less it refines the mesh, and strain energies beside ridges do not
     get better by that.
     """
-    outputs = {"receptors": {"depths": ["915 um"], "offsets": ["-46 um", "46 um"]}}
-    ramp, ridged = [{"press_to_force": "20 gf", "rate": "40 gf/s"}], {"ridges": "inner"}
-    plans = {
-        a: plan(scene(FLAT, ramp, accuracy=a, specimen=ridged, outputs=outputs))
-        for a in ("draft", "thesis", "fine", 0.01)
-    }
-    for asked, error in (("draft", 0.06), ("thesis", 0.02), ("fine", 0.007), (0.01, 0.01)):
-        assert (
-            plans[asked].least_error == pytest.approx(error, rel=1e-6)
-            and plans[asked].missed() is None
-        )
-    middle = [min(edge for x, edge in plans[asked].mesh_size.focus if x == 0) for asked in plans]
-    assert middle[0] > middle[1] > middle[3] > middle[2] and plans[
-        "thesis"
-    ].contact_edge == pytest.approx(134.4e-6)
-    assert (
-        plans["thesis"].nodes
-        < 1.2 * plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged)).nodes
-    )
-    far = outputs | {"receptors": {"depths": ["500 um"], "offsets": ["0 um"]}}
-    away = plan(
-        scene(FLAT, ramp, accuracy="thesis", specimen=ridged, outputs=far, effects={"ridges": "on"})
-    )
+    beside = RIDGED | receptors(["915 um"], ["-46 um", "46 um"])
+    errors = {"draft": 0.06, "thesis": 0.02, 0.01: 0.01, "fine": 0.007}
+    plans = {asked: planned(FLAT, RAMP, accuracy=asked, **beside) for asked in errors}
+    for asked, error in errors.items():
+        assert plans[asked].least_error == pytest.approx(error, rel=1e-6)
+        assert plans[asked].missed() is None
+    middle = [min(edge for x, edge in each.mesh_size.focus if x == 0) for each in plans.values()]
+    assert middle == sorted(middle, reverse=True)
+    thesis, by_hand = plans["thesis"], {"accuracy": {"skin_edge": "134.4 um"}}
+    assert thesis.contact_edge == pytest.approx(134.4e-6)
+    assert thesis.nodes < 1.2 * planned(FLAT, RAMP, **by_hand, **RIDGED).nodes
+    far = RIDGED | receptors(["500 um"], ["0 um"]) | {"effects": {"ridges": "on"}}
+    away = planned(FLAT, RAMP, accuracy="thesis", **far)
     assert away.least_error == 0 and not away.mesh_size.focus
-    by_hand = plan(
-        scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged, outputs=outputs)
-    )
-    assert (
-        by_hand.least_error > 0.05
-        and not by_hand.mesh_size.focus
-        and by_hand.error_from == "elements among ridges that receptors are in"
-    )
+    own = planned(FLAT, RAMP, **by_hand, **beside)
+    assert own.least_error > 0.05 and not own.mesh_size.focus
+    assert own.error_from == "elements among ridges that receptors are in"
 
 
-def test_ridges_that_are_stroked_are_meshed_for_half_the_tolerance():
+@pytest.mark.parametrize(("asked", "error"), [("thesis", 0.01), (0.05, 0.025)])
+def test_ridges_that_are_stroked_are_meshed_for_half_the_tolerance(asked, error):
     """Rates are what strain energies change by."""
-    outputs = {"receptors": {"depths": ["915 um"], "offsets": ["0 um"]}}
-    stroke = [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
-    for asked, error in (("thesis", 0.01), (0.05, 0.025)):
-        chosen = plan(
-            scene(
-                FLAT,
-                stroke,
-                accuracy=asked,
-                specimen={"ridges": "inner"},
-                outputs=outputs,
-                friction=0.3,
-            )
-        )
-        assert chosen.least_error == pytest.approx(error, rel=1e-6)
+    beside = RIDGED | receptors(["915 um"], ["0 um"])
+    stroke = [*PRESS, {"slide": "4 mm", "speed": "10 mm/s"}]
+    chosen = planned(FLAT, stroke, accuracy=asked, friction=0.3, **beside)
+    assert chosen.least_error == pytest.approx(error, rel=1e-6)
 
 
 # -- true edges ------------------------------------------------------------------------------------
@@ -192,17 +167,13 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
     """Of 80 mm over the wavy surface 10, 5, 2 and 1 % are had for ever more work; of a plate the
     last bit is not paid for.
     """
-    slide = {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"}
-    long = scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35)
+    long = scene({"shape": "wavy"}, [*PRESS, SLIDE], friction=0.35)
     had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.02, 0.01)]
     work = [chosen.nodes * chosen.steps for chosen in had]
     assert all(chosen.missed() is None for chosen in had) and work == sorted(work)
-    assert (
-        had[1].nodes < 15_000
-        and had[2].nodes < 30_000
-        and "of strokes root mean square" in had[0].covers
-    )
-    over_plate = scene({"shape": "flat"}, [*PRESS, slide], friction=0.35, accuracy=1e-4)
+    assert had[1].nodes < 15_000 and had[2].nodes < 30_000
+    assert "of strokes root mean square" in had[0].covers
+    over_plate = scene(FLAT, [*PRESS, SLIDE], friction=0.35, accuracy=1e-4)
     missing = plan(over_plate)
     monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
     least = plan(over_plate)
@@ -213,33 +184,25 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
 
 def test_steps_of_a_steady_stroke_count_as_those_of_a_timed_one():
     """Friction remembers the way, however long it took."""
-    slides = ({"slide": "80 mm"}, {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"})
     steady, timed = (
-        plan(scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35, accuracy=0.02))
-        for slide in slides
+        planned({"shape": "wavy"}, [*PRESS, slide], friction=0.35, accuracy=0.02)
+        for slide in ({"slide": "80 mm"}, SLIDE)
     )
     assert not steady.timed and timed.timed and steady.steps_per_leg == timed.steps_per_leg > 10
     assert steady.estimated_error == pytest.approx(timed.estimated_error, rel=0.1)
 
 
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
-    sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
-    assert (
-        sharp.unbounded
-        and "pressure is unbounded at the edges" in sharp.covers
-        and "root mean" not in sharp.covers
-    )
-    stroked = plan(scene(BAR, [*PRESS, {"slide": "1 mm"}])).covers
+    sharp = planned(BAR)
+    assert sharp.unbounded and sharp.estimated_error >= RULES.edge_floor
+    assert "pressure is unbounded at the edges" in sharp.covers
+    assert "root mean" not in sharp.covers
+    stroked = planned(BAR, [*PRESS, {"slide": "1 mm"}]).covers
     assert "unbounded" in stroked and "root mean square" in stroked
-    assert sharp.estimated_error >= RULES.edge_floor
-    for chosen in (
-        rounded,
-        plan(scene({"shape": "line"})),
-        plan(scene()),
-        plan(scene(cylinder(1e4))),
-    ):
+    for stimulus in (ROUNDED, {"shape": "line"}, FLAT, cylinder(1e4)):
+        chosen = planned(stimulus)
         assert not chosen.unbounded and "unbounded" not in chosen.covers
-    assert plan(scene(BAR | {"fillet": "1 nm"}, accuracy=0.05)).unbounded, (
+    assert planned(BAR | {"fillet": "1 nm"}, accuracy=0.05).unbounded, (
         "a rounding that no mesh resolves"
     )
 
@@ -247,14 +210,12 @@ def test_peak_is_unbounded_under_a_true_edge_and_only_there():
 def test_run_under_a_true_edge_says_so_everywhere():
     history = simulate(scene(BAR, accuracy=0.05))
     totals = summary(history)
-    assert totals["run"]["peak_pressure_singular"] and "unbounded" in totals["run"]["error_covers"]
-    assert "unbounded" in history.peak_pressure.attrs["comment"] and "unbounded" in _error_line(
-        totals
-    )
-    assert not totals["run"]["tolerance_met"] and len(totals["run"]["runs"]) == 1
-    assert "asked 5 %, got 15 %: at a true edge" in _error_line(
-        totals
-    ) and "a finer mesh would not help" in _error_line(totals)
+    run, line = totals["run"], _error_line(totals)
+    assert run["peak_pressure_singular"] and not run["tolerance_met"] and len(run["runs"]) == 1
+    comment = history.peak_pressure.attrs["comment"]
+    assert all("unbounded" in text for text in (run["error_covers"], comment, line))
+    assert "asked 5 %, got 15 %: at a true edge" in line
+    assert "a finer mesh would not help" in line
 
 
 # -- run again -------------------------------------------------------------------------------------
@@ -269,10 +230,9 @@ def believing(monkeypatch, *errors):
     def estimates(self, records, width):
         plans.append(self.plan)
         error = next(told)
-        legs = json.dumps([error])
         return {
             "estimated_error": error,
-            "estimated_error_of_legs": legs,
+            "estimated_error_of_legs": json.dumps([error]),
             "largest_error": error,
             "narrowest_half_width": 4e-4,
         }
@@ -284,11 +244,8 @@ def believing(monkeypatch, *errors):
 def test_missed_tolerance_is_refined_and_run_again(monkeypatch):
     plans = believing(monkeypatch, 0.3, 0.05)
     run = summary(simulate(scene(accuracy=0.1)))["run"]
-    assert (
-        [each["estimated_error"] for each in run["runs"]] == [0.3, 0.05]
-        and run["tolerance_met"]
-        and run["asked_error"] == 0.1
-    )
+    assert [each["estimated_error"] for each in run["runs"]] == [0.3, 0.05]
+    assert run["tolerance_met"] and run["asked_error"] == 0.1
     assert plans[1].nodes > plans[0].nodes and plans[1].contact.narrowest == 4e-4
     assert "after 2 runs" in _error_line({"run": run, "legs": [{"estimated_error": 0.05}]})
 
@@ -298,64 +255,56 @@ def test_runs_are_few(monkeypatch):
     believing(monkeypatch, 0.5, 0.4, 0.3, 0.2)
     run = summary(simulate(scene(accuracy=0.1)))["run"]
     assert len(run["runs"]) == RULES.most_runs == 3 and not run["tolerance_met"]
-    assert run["tolerance_missed"].startswith("asked 10 %, got 30 %: ") and run[
-        "tolerance_missed"
-    ].endswith("after 3 runs")
+    assert run["tolerance_missed"].startswith("asked 10 %, got 30 %: ")
+    assert run["tolerance_missed"].endswith("after 3 runs")
 
 
-@pytest.mark.parametrize(
-    "accuracy", [{"tolerance": 0.1, "once": True}, {"once": True, "skin_edge": "0.5 mm"}, "draft"]
-)
-def test_once_by_hand_and_presets_run_once(monkeypatch, accuracy):
+@pytest.mark.parametrize("accuracy", [{"once": True, "skin_edge": "0.5 mm"}, "draft"])
+def test_by_hand_and_presets_run_once(monkeypatch, accuracy):
     believing(monkeypatch, 0.5)
-    run = summary(simulate(scene(accuracy=accuracy)))["run"]
-    if accuracy == "draft" or "tolerance" not in accuracy:
-        assert "asked_error" not in run and "runs" not in run
-    else:
-        assert run["tolerance_missed"].startswith("asked 10 %, got 50 %") and len(run["runs"]) == 1
+    assert not {"asked_error", "runs"} & set(summary(simulate(scene(accuracy=accuracy)))["run"])
 
 
-def test_given_mesh_is_run_once(monkeypatch):
-    believing(monkeypatch, 0.5)
-    asked = scene(accuracy=0.1)
-    run = summary(simulate(asked, mesh=mesh_for(asked, plan(asked))))["run"]
-    assert len(run["runs"]) == 1 and run["tolerance_missed"].endswith("a mesh was given")
+def test_a_tolerance_is_tried_once_if_so_asked_or_a_mesh_is_given(monkeypatch):
+    believing(monkeypatch, 0.5, 0.5)
+    once, asked = scene(accuracy={"tolerance": 0.1, "once": True}), scene(accuracy=0.1)
+    for history, reason in (
+        (simulate(once), ""),
+        (simulate(asked, mesh=mesh_for(asked, plan(asked))), "a mesh was given"),
+    ):
+        run = summary(history)["run"]
+        assert len(run["runs"]) == 1 and run["tolerance_missed"].endswith(reason)
+        assert run["tolerance_missed"].startswith("asked 10 %, got 50 %")
 
 
 def test_refining_stops_where_it_is_too_dear_or_no_use():
     asked = scene(accuracy=0.02)
-    chosen = plan(asked)
+    chosen, dear = plan(asked), replace(RULES, most_nodes_again=100)
     assert refined(asked, chosen, 0.01, 1e-3) == ""
     assert refined(asked, chosen, 0.05, 1e-3, runs=3) == "after 3 runs"
-    assert "would need" in refined(
-        asked, chosen, 0.05, 1e-3, rules=replace(RULES, most_nodes_again=100)
-    )
+    assert "would need" in refined(asked, chosen, 0.05, 1e-3, rules=dear)
     assert isinstance(refined(asked, chosen, 0.05, 3e-4), Plan)
-    assert (
-        refined(asked, replace(chosen, mesh_size=None), 0.05, 1e-3)
-        == "an external mesh is not refined"
-    )
+    external = replace(chosen, mesh_size=None)
+    assert refined(asked, external, 0.05, 1e-3) == "an external mesh is not refined"
 
 
 def test_accuracy_that_cannot_be_had_is_said():
-    chosen = plan(scene(accuracy=1e-6))
+    chosen = planned(accuracy=1e-6)
     assert chosen.missed().startswith("asked 0.0001 %, cannot be reached: expected 0.1")
     assert chosen.to_dict()["tolerance_met"] is False and chosen.to_dict()["asked_error"] == 1e-6
 
 
 def test_own_meshes_are_believed_by_element_and_quantity(tmp_path):
     """The same nodes as quads of nine nodes, as linear quads and as triangles."""
-    built = mesh_for(scene(), plan(scene(accuracy="draft")))
+    built = mesh_for(scene(), planned(accuracy="draft"))
     errors = {}
-    for kind in ("quad9", "quad4", "tri6"):
+    for kind, element in (("quad9", {}), ("quad4", {"element": "Q1P0"}), ("tri6", {})):
         path = tmp_path / f"{kind}.msh"
         write_pad(built if kind == "quad9" else split(built, kind), path)
-        accuracy = {"tolerance": 0.001} | ({"element": "Q1P0"} if kind == "quad4" else {})
-        chosen = plan(scene(specimen={"mesh": str(path)}, accuracy=accuracy))
+        chosen = planned(specimen={"mesh": str(path)}, accuracy={"tolerance": 0.001} | element)
         errors[kind] = chosen.errors
-        assert chosen.estimated_error == max(chosen.errors.values()) and set(chosen.errors) == {
-            *errors["quad9"]
-        }
+        assert chosen.estimated_error == max(chosen.errors.values())
+        assert set(chosen.errors) == set(errors["quad9"])
     assert all(errors["tri6"][quantity] > least for quantity, least in errors["quad9"].items())
     assert errors["quad4"]["depth"] > 2 * errors["quad9"]["depth"]
 
@@ -364,38 +313,33 @@ def test_linear_quads_are_raised_only_where_something_that_is_kept_needs_it(tmp_
     """Fine along the skin and coarse below it: of such quads only strain energy is wrong; without
     receptors they do.
     """
-    size = replace(plan(scene(accuracy="thesis")).mesh_size, skin_edge=150e-6, layer_edge=600e-6)
+    size = replace(planned(accuracy="thesis").mesh_size, skin_edge=150e-6, layer_edge=600e-6)
     path = tmp_path / "quads.msh"
     write_pad(split(build_pad_mesh(scene().specimen.outline, size), "quad4"), path)
     given = {"specimen": {"mesh": str(path)}, "accuracy": 0.05}
-    receptors = [
-        {"receptors": {"depths": depths, "offsets": ["0 mm"]}} for depths in (["0.5 mm"], [])
-    ]
-    kept, none = (plan(scene(outputs=outputs, **given)) for outputs in receptors)
+    scenes = [scene(**given, **receptors(depths, ["0 mm"])) for depths in (["0.5 mm"], [])]
+    kept, none = map(plan, scenes)
     assert kept.element == "Q2P1" and "linear quads raised" in kept.specimen[-1]
     assert none.element == "Q1P0" and "strain energy" not in none.errors and none.missed() is None
     # which is right: the force at a depth, and the pressure, are those of the raised mesh
-    histories = [simulate(scene(outputs=outputs, **given)) for outputs in receptors]
+    histories = [simulate(each) for each in scenes]
     for name in ("indentation_depth", "centre_pressure"):
-        assert float(histories[1][name][-1] / histories[0][name][-1]) == pytest.approx(1, abs=0.02)
+        raised, linear = (float(history[name][-1]) for history in histories)
+        assert linear / raised == pytest.approx(1, abs=0.02)
 
 
 def test_ten_thousand_nodes_of_linear_quads_stay_under_a_plate(tmp_path):
     """They are right within a fifth of a per cent, so that the thesis's accuracy does not make
     forty thousand of them.
     """
-    built = mesh_for(scene(), plan(scene(accuracy="thesis")))
-    write_pad(split(built, "quad4"), tmp_path / "quads.msh")
-    mine, own = (
-        scene(specimen={"mesh": str(tmp_path / "quads.msh")}, accuracy="thesis"),
-        scene(accuracy="fine"),
-    )
+    path = tmp_path / "quads.msh"
+    write_pad(split(mesh_for(scene(), planned(accuracy="thesis")), "quad4"), path)
+    mine = scene(specimen={"mesh": str(path)}, accuracy="thesis")
     chosen = plan(mine)
     assert chosen.element == "Q1P0" and chosen.estimated_error < 0.02
-    found, truth = simulate(mine), simulate(own)
-    assert float(found.indentation_depth[-1] / truth.indentation_depth[-1]) == pytest.approx(
-        1, abs=2e-3
-    )
+    found, truth = simulate(mine), simulate(scene(accuracy="fine"))
+    depths = [float(history.indentation_depth[-1]) for history in (found, truth)]
+    assert depths[0] / depths[1] == pytest.approx(1, abs=2e-3)
     assert float(found.attrs["estimated_error"]) < 0.02
 
 
@@ -413,28 +357,24 @@ def test_unloading_ends_with_a_small_error_and_tells_the_largest():
 # -- bounds ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("changes", "key"),
-    [
-        ({"stimulus": cylinder(1e12)}, "stimulus.curvature: so sharp"),
-        ({"stimulus": cylinder(1e30)}, "stimulus.curvature: so sharp"),
-        ({"motion": [{"press_to_force": "1e-15 N"}]}, r"motion\[0\].press_to_force: so little"),
-        (
-            {"motion": [{"press_to_force": "1e-9 gf"}], "accuracy": 0.05},
-            r"motion\[0\].press_to_force: so little",
-        ),
-        ({"motion": [{"press_to_depth": "1e-15 m"}]}, r"motion\[0\].press_to_depth: so little"),
-        ({"accuracy": {"skin_edge": "1 nm"}}, "accuracy.skin_edge: edges of 0.001 um make"),
-        (
-            {"specimen": {"ridges": {"inner": {"pitch": "1 um", "height": "0.5 um"}}}},
-            "specimen.ridges.inner.pitch: ",
-        ),
-    ],
-)
+REFUSED = r"""
+- [{stimulus: {shape: cylinder, curvature: 1e12 1/m}}, "stimulus.curvature: so sharp"]
+- [{stimulus: {shape: cylinder, curvature: 1e30 1/m}}, "stimulus.curvature: so sharp"]
+- [{motion: [{press_to_force: 1e-15 N}]}, 'motion\[0\].press_to_force: so little']
+- - {motion: [{press_to_force: 1e-9 gf}], accuracy: 0.05}
+  - 'motion\[0\].press_to_force: so little'
+- [{motion: [{press_to_depth: 1e-15 m}]}, 'motion\[0\].press_to_depth: so little']
+- [{accuracy: {skin_edge: 1 nm}}, "accuracy.skin_edge: edges of 0.001 um make"]
+- - {specimen: {ridges: {inner: {pitch: 1 um, height: 0.5 um}}}}
+  - "specimen.ridges.inner.pitch: "
+"""
+
+
+@pytest.mark.parametrize(("changes", "key"), yaml.safe_load(REFUSED))
 def test_what_no_machine_can_solve_is_refused(changes, key):
     """Before anything is allocated, and naming the key."""
     with pytest.raises(PlanError, match=key + ".*allowed: "):
-        plan(scene(**changes))
+        planned(**changes)
 
 
 @pytest.mark.parametrize(
@@ -451,37 +391,26 @@ def test_memory_is_bounded(rules, key):
 
 
 def test_receptors_that_do_not_fit_are_named():
-    many = {
-        "receptors": {
-            "depths": [f"{300 + k} um" for k in range(300)],
-            "offsets": [f"{k / 200:g} mm" for k in range(300)],
-        }
-    }
-    assert plan(scene(outputs=many)).nodes > 1000
+    depths, offsets = zip(*((f"{300 + k} um", f"{5 * k} um") for k in range(300)), strict=True)
+    many = scene(**receptors(list(depths), list(offsets)))
+    assert plan(many).nodes > 1000
     with pytest.raises(PlanError, match="outputs.receptors: .* 90000 receptors need about"):
-        plan(scene(outputs=many), replace(RULES, most_memory=1e-6))
+        plan(many, replace(RULES, most_memory=1e-6))
 
 
 # -- plan solved = plan written --------------------------------------------------------------------
 
 
-def test_plan_solved_is_the_plan_written(tmp_path, capsys):
+def test_plan_solved_is_the_plan_written(tmp_path):
     """What a run was solved with is what its folder tells, also of a run that was refined, and it
     can be run again from there.
     """
-    document = tmp_path / "light.yaml"
-    document.write_text(
-        "stimulus: {shape: flat}\nmotion: [{press_to_force: 2 gf}]\naccuracy: 0.1\n"
-    )
-    assert main(["run", str(document), "--out", str(tmp_path / "out")]) == 0
-    from fingerpad.results import read_history
-
-    history, written = (
-        read_history(tmp_path / "out" / "history.nc"),
-        read_plan(tmp_path / "out" / "plan.json"),
-    )
+    light = {"motion": [{"press_to_force": "2 gf"}], "accuracy": 0.1}
+    document, out = tmp_path / "light.yaml", tmp_path / "out"
+    document.write_text(yaml.safe_dump({"stimulus": FLAT, **light}))
+    assert main(["run", str(document), "--out", str(out)]) == 0
+    history, written = read_history(out / "history.nc"), read_plan(out / "plan.json")
     assert Plan.from_dict(json.loads(history.attrs["plan"])) == written
     assert json.loads(history.attrs["cost"])["nodes"] == pytest.approx(written.nodes, rel=0.05)
-    asked = scene(motion=[{"press_to_force": "2 gf"}], accuracy=0.1)
-    again = simulate(asked, written)
+    again = simulate(scene(**light), written)
     assert (again.contact_pressure.values == history.contact_pressure.values).all()

@@ -15,22 +15,15 @@ from own_meshes import SLAB, slab
 pytestmark = pytest.mark.verification
 
 PRESS = [{"press_to_force": "20 gf"}]
+PRESETS = ("draft", "thesis", "fine")
 
 
-def sampled(folder, x, y, motion=PRESS, **keys):
-    path = folder / "profile.csv"
-    np.savetxt(
-        path,
-        1e3 * np.column_stack([x, y]),
-        delimiter=",",
-        header="x (mm),y (mm)",
-        comments="",
-        fmt="%.9g",
-    )
-    return load_scene(
-        {"stimulus": {"shape": "sampled", "csv": str(path)}, "motion": motion, "accuracy": "draft"}
-        | keys
-    )
+def sampled(folder, x, y, motion=PRESS, accuracy="draft"):
+    path, points = folder / "profile.csv", 1e3 * np.column_stack([x, y])
+    rows = (f"{a:.9g},{b:.9g}" for a, b in points)
+    path.write_text("\n".join(["x (mm),y (mm)", *rows]))
+    stimulus = {"shape": "sampled", "csv": str(path)}
+    return load_scene({"stimulus": stimulus, "motion": motion, "accuracy": accuracy})
 
 
 def parabola(folder, spacing, **keys):
@@ -41,17 +34,11 @@ def parabola(folder, spacing, **keys):
 def marks(history):
     """What line, summary and variables say, which must agree."""
     totals = summary(history)
-    at = totals["run"]["peak_pressure_unbounded_at"]
-    assert (
-        totals["run"]["peak_pressure_singular"]
-        == bool(at)
-        == ("unbounded" in history.peak_pressure.attrs.get("comment", ""))
-    )
-    assert (
-        ("unbounded" in _error_line(totals))
-        == bool(at)
-        == ("unbounded" in history.attrs["error_covers"])
-    )
+    run = totals["run"]
+    at, comment = run["peak_pressure_unbounded_at"], history.peak_pressure.attrs.get("comment", "")
+    assert run["peak_pressure_singular"] == bool(at)
+    for text in (comment, _error_line(totals), history.attrs["error_covers"]):
+        assert ("unbounded" in text) == bool(at)
     return at
 
 
@@ -75,22 +62,15 @@ def test_nineteen_points_of_a_curve_have_corners_that_grow(tmp_path):
     """The same surface sampled coarsely: its peak does not settle, and is marked; sampled densely
     it does, and is not.
     """
-    coarse = [
-        fingerpad.simulate(parabola(tmp_path, 12e-3 / 18, accuracy=a))
-        for a in ("draft", "thesis", "fine")
-    ]
-    dense = [
-        fingerpad.simulate(parabola(tmp_path, 20e-6, accuracy=a))
-        for a in ("draft", "thesis", "fine")
-    ]
+    coarse, dense = (
+        [fingerpad.simulate(parabola(tmp_path, spacing, accuracy=a)) for a in PRESETS]
+        for spacing in (12e-3 / 18, 20e-6)
+    )
     for history in coarse:
-        assert (
-            "corners from x = -1" in marks(history)
-            and "pressure, " not in history.attrs["error_covers"].split(";")[0]
-        )
-    growth = np.diff([peak(history) for history in coarse]) / peak(coarse[0])
-    assert (growth > 0.1).all()
-    assert np.ptp([peak(history) for history in dense]) < 0.005 * peak(dense[0])
+        assert "corners from x = -1" in marks(history)
+        assert "pressure, " not in history.attrs["error_covers"].split(";")[0]
+    peaks, settled = (list(map(peak, histories)) for histories in (coarse, dense))
+    assert (np.diff(peaks) > 0.1 * peaks[0]).all() and np.ptp(settled) < 0.005 * settled[0]
     depths = [float(history.indentation_depth[-1]) for history in coarse]
     assert np.ptp(depths) < 0.01 * depths[0]  # which keeps its error
 

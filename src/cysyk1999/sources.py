@@ -49,7 +49,7 @@ def imported_sources(*modules: str) -> list[Path]:
     Notes
     -----
     Imports inside functions count; those under ``TYPE_CHECKING`` do not. A module rests on what its
-    package imports. Who imports a verb from
+    package imports, and on the YAML file of its name beside it. Who imports a verb from
     ``fingerpad`` rests on the modules of all verbs.
     """
     found: set[str] = set()
@@ -58,7 +58,9 @@ def imported_sources(*modules: str) -> list[Path]:
         found |= todo.union(*map(_upstream, todo))
         verbs = set(fingerpad.HOMES.values()) if "fingerpad" in found else set()
         todo = ({name.rpartition(".")[0] for name in found} | verbs) - found - {"", "fingerpad"}
-    return sorted(map(_file, found | {name.partition(".")[0] for name in found}))
+    files = [_file(name) for name in found | {name.partition(".")[0] for name in found}]
+    data = (file.with_suffix(".yaml") for file in files)
+    return sorted([*files, *(file for file in data if file.exists())])
 
 
 @cache

@@ -15,7 +15,8 @@ BESIDE_A_RUN = ("__main__.py", "cli.py", "reference_solutions", "sweeps")
 
 @cache
 def code_digest(folder: Path = PACKAGE, without: tuple[str, ...] = ()) -> str:
-    """SHA-256 of the names and contents of all Python files in a folder, wherever the folder lies.
+    """SHA-256 of the names and contents of all Python files in a folder, and of the
+    YAML files of their names, wherever the folder lies.
 
     Parameters
     ----------
@@ -35,8 +36,9 @@ def code_digest(folder: Path = PACKAGE, without: tuple[str, ...] = ()) -> str:
     64
     """
     whole = hashlib.sha256()
-    paths = (p for p in folder.rglob("*.py") if p.relative_to(folder).parts[0] not in without)
-    for path in sorted(paths):
+    modules = (p for p in folder.rglob("*.py") if p.relative_to(folder).parts[0] not in without)
+    files = (p for module in modules for p in (module, module.with_suffix(".yaml")) if p.is_file())
+    for path in sorted(files):
         content = hashlib.sha256(path.read_bytes()).hexdigest()
         whole.update(f"{path.relative_to(folder).as_posix()}\0{content}\n".encode())
     return whole.hexdigest()

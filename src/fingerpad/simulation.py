@@ -34,7 +34,7 @@ from fingerpad.mechanics.stepping import (
 )
 from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
-from fingerpad.planning.errors import estimated_error, own_errors, stroke_of
+from fingerpad.planning.errors import ContactErrors, stroke_of
 from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
@@ -419,12 +419,12 @@ class Simulation:
         plan, bumpy = self.plan, self.scene.stimulus.irregular
         half_width = min(width / 2, plan.contact.narrowest or np.inf) or NO_CONTACT_WIDTH
         steps = plan.states_per_leg if plan.timed or plan.strokes else None
+        errors = ContactErrors(RULES, half_width, steps, stroke, bumpy)
         if plan.mesh_size is None:
-            known = plan.element, plan.contact_edge, half_width, plan.receptor_height, steps, stroke
-            error = max(own_errors(*known, rules=RULES, bumpy=bumpy).values())
+            by_quantity = errors.on_own_mesh(plan.element, plan.contact_edge, plan.receptor_height)
+            error = max(by_quantity.values())
         else:
-            built = plan.contact_edge, half_width, steps, stroke, plan.mesh_size.skin_edge
-            error = estimated_error(*built, rules=RULES, bumpy=bumpy)
+            error = errors.on_built_mesh(plan.contact_edge, plan.mesh_size.skin_edge)
         return max(error, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _unbounded(self, record: Record) -> Unbounded:

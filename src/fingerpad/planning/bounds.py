@@ -32,7 +32,7 @@ def check_size(scene: Scene, size: MeshSize, rules: Any) -> None:
     rows = fine / size.layer_edge + 4
     nodes = 8 * rows * (size.fine_half_width / size.skin_edge + len(size.focus))
     if nodes > rules.most_nodes:
-        key = "accuracy.skin_edge" if getattr(scene.accuracy, "skin_edge", None) else "accuracy"
+        key = "accuracy.skin_edge" if scene.by_hand.skin_edge else "accuracy"
         least = size.skin_edge * (nodes / rules.most_nodes) ** 0.5
         raise PlanError(
             f"{key}: edges of {micrometres(size.skin_edge)} um make {nodes:.2g} nodes; "
@@ -42,23 +42,20 @@ def check_size(scene: Scene, size: MeshSize, rules: Any) -> None:
 
 def check_memory(scene: Scene, nodes: int, steps: int, rules: Any) -> None:
     """Refuses what would need more memory than the machine has, or more nodes than are allowed."""
+    if nodes > rules.most_nodes:
+        raise PlanError(f"accuracy: {nodes} nodes; allowed: {rules.most_nodes:g}")
     (memory, limited), receptors = _memory(), receptors_of(scene)
     needed = {
         "accuracy": nodes * rules.bytes_node,
-        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes
-        * steps
-        * rules.bytes_step,
+        "accuracy.steps" if scene.by_hand.steps else "motion": nodes * steps * rules.bytes_step,
         "outputs.receptors": receptors * (steps + 1) * _RECEPTOR_BYTES,
     }
-    if nodes > rules.most_nodes:
-        raise PlanError(f"accuracy: {nodes} nodes; allowed: {rules.most_nodes:g}")
-    if sum(needed.values()) > rules.most_memory * memory:
-        worst = max(needed, key=needed.get)
+    total, most = sum(needed.values()), rules.most_memory * memory
+    if total > most:
         raise PlanError(
-            f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about "
-            f"{sum(needed.values()) / 1e9:.2g} GB "
-            f"of memory; allowed: {rules.most_memory * memory / 1e9:.2g} GB on this "
-            f"machine{limited}"
+            f"{max(needed, key=needed.get)}: {nodes} nodes, {steps} steps and {receptors} "
+            f"receptors need about {total / 1e9:.2g} GB of memory; "
+            f"allowed: {most / 1e9:.2g} GB on this machine{limited}"
         )
 
 
@@ -70,9 +67,8 @@ def _memory() -> tuple[float, str]:
     machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if limit == resource.RLIM_INFINITY or limit - _PROGRAM_BYTES >= machine:
         return machine, ""
-    return max(
-        limit - _PROGRAM_BYTES, 0.0
-    ), f", where a limit leaves {limit / 1e9:.2g} GB to all of the program (ulimit -v)"
+    said = f", where a limit leaves {limit / 1e9:.2g} GB to all of the program (ulimit -v)"
+    return max(limit - _PROGRAM_BYTES, 0.0), said
 
 
 def receptors_of(scene: Scene) -> int:

@@ -9,26 +9,47 @@ from dataclasses import replace
 import numpy as np
 
 from fingerpad.planning.bounds import PlanError
-from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.planning.effect import Case
+from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.rules import Rules
 from fingerpad.planning.schedule import leg_durations
+from fingerpad.planning.stack_estimate import pad_estimate
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.files import read_specimen_mesh
+from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import PadMesh
-from fingerpad.stimuli.profile import Profile
 
 _USUAL_FORCE = 0.01  # N, with which a finger touches
 _FLATTER = 0.8  # pieces less than so much narrower than the contact are the contact
 
 
-def moves_along(scene: Scene) -> bool:
-    return any(leg.along for leg in scene.motion)
+def case_of(scene: Scene, rules: Rules, narrowest: float | None = None) -> Case:
+    """A scene with its contact estimated, before anything is decided.
 
+    Parameters
+    ----------
+    narrowest
+        m, half-width of the narrowest contact that a run has found, in place of the estimated one.
 
-def way_of(scene: Scene) -> tuple[float, float]:
-    """Least and largest x (m) of the stimulus that comes over the middle of the pad."""
-    way = np.cumsum([0.0, *(leg.along for leg in scene.motion)])
-    return float(way.min()), float(way.max())
+    Raises
+    ------
+    PlanError
+        A measured profile is not over the finger, or the contact is narrower than any element.
+    """
+    external, stimulus = external_mesh(scene), scene.stimulus
+    _check_over_pad(scene, external)
+    # noise is no contact's curvature
+    profile = stimulus.felt(_usual_edge(scene, external, rules))
+    pad = pad_estimate(scene.specimen, external, stimulus.face)
+    case = Case(scene, rules, external, profile, pad)
+    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets
+    # the sharpest convexity
+    curved = case.moves or not profile.uneven
+    contact = worst_contact(case, profile.convexity if curved else 0.0)
+    case = replace(case, contact=contact)
+    case = replace(case, contact=replace(contact, narrowest=_narrowest(case, narrowest)))
+    _check_width(case)
+    return case
 
 
 def external_mesh(scene: Scene) -> PadMesh | None:
@@ -36,34 +57,41 @@ def external_mesh(scene: Scene) -> PadMesh | None:
     return None if scene.specimen.mesh is None else read_specimen_mesh(scene.specimen).elevated()
 
 
-def check_over_pad(scene: Scene, external: PadMesh | None) -> None:
+def _usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
+    """Edge (m) of the skin before the contact is known: of the mesh given, the preset, or the one
+    by hand; else of the thesis.
+    """
+    if external is not None:
+        return apex_edge(external)
+    level = scene.accuracy if isinstance(scene.accuracy, str) else "thesis"
+    return scene.by_hand.skin_edge or rules.presets[level].skin_edge
+
+
+def _check_over_pad(scene: Scene, external: PadMesh | None) -> None:
     """`PlanError` for a measured profile that is not over the finger when it comes down."""
     first, last = scene.stimulus.known
     if external is not None:
         half = np.ptp(external.points[:, 0]) / 2
     else:
-        half = (scene.specimen.outline or scene.specimen.stack).half_width
+        half = scene.specimen.half_width
     if first > half / 2 or last < -half / 2:
         name = getattr(scene.stimulus.csv, "name", "x, y")
-        there = f"from x = {first * 1e3:.4g} mm to {last * 1e3:.4g} mm"
         raise PlanError(
-            f"{scene.name}: stimulus.csv: '{name}' has points {there}, none of them over the "
-            "finger; "
+            f"{scene.name}: stimulus.csv: '{name}' has points from x = {first * 1e3:.4g} mm to "
+            f"{last * 1e3:.4g} mm, none of them over the finger; "
             "allowed: points around x = 0, which comes down on its apex"
         )
 
 
-def worst_contact(
-    scene: Scene, pad: PadEstimate, profile: Profile, curvature: float
-) -> ContactEstimate:
+def worst_contact(case: Case, curvature: float) -> ContactEstimate:
     """The deepest contact of the motion with a surface of ``curvature`` 1/m."""
-    specimen = scene.specimen
+    scene, pad, profile = case.scene, case.pad, case.profile
     # at a kept depth the surface comes as much deeper as it reaches below its start
     keeps_depth = any(leg.kept == "depth" for leg in scene.motion)
-    worst = ContactEstimate(0.0, 0.0, 0.0)
+    worst = ContactEstimate()
     for leg in scene.motion:
         if leg.force is not None:
-            now = pad.pressed(leg.force / specimen.contact_length, curvature)
+            now = pad.pressed(leg.force / scene.specimen.contact_length, curvature)
         elif leg.depth is not None:
             now = pad.pressed_to(leg.depth, curvature)
         else:
@@ -77,89 +105,71 @@ def worst_contact(
     return worst
 
 
-def least_half_width(
-    scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate, found: float | None
-) -> float | None:
+def _narrowest(case: Case, found: float | None) -> float | None:
     """Half-width (m) of the least piece of the contact where that is not the contact itself: a
     face, a tip, a bump; or found.
     """
+    profile, half_width = case.profile, case.contact.half_width
     least = np.inf if found is None else found
-    if profile.edges or (not profile.irregular and profile.reach[1] < contact.half_width):
+    if profile.edges or (not profile.irregular and profile.reach[1] < half_width):
         least = min(least, profile.reach[1])
     elif profile.irregular:
-        low, high = way_of(scene)
-        force = pressing_force(scene, pad, contact)
-        bump = pad.least_piece(
-            force, profile.outline, low - contact.half_width, high + contact.half_width
+        low, high = case.way
+        bump = case.pad.least_piece(
+            case.force, profile.outline, low - half_width, high + half_width
         )
-        least = min(least, bump if bump < _FLATTER * contact.half_width else np.inf)
-    if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None:
-        period = scene.specimen.ridges.outer.period or scene.specimen.ridges.inner.pitch
-        least = min(least, period / 4)  # the skin touches with the tops of its ridges
+        if bump < _FLATTER * half_width:
+            least = min(least, bump)
+    ridges = case.scene.specimen.ridges
+    if ridges is not None and ridges.outer is not None:
+        # the skin touches with the tops of its ridges
+        least = min(least, (ridges.outer.period or ridges.inner.pitch) / 4)
     return float(least) if np.isfinite(least) else None
 
 
-def earliest_half_width(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
+def earliest_half_width(case: Case, timed: bool) -> float:
     """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is
     larger.
     """
-    relaxes = timed and scene.specimen.moduli == "long_term"
-    share = (1 - sum(term.g for term in scene.specimen.prony)) ** 0.5 if relaxes else 1.0
+    specimen, contact = case.scene.specimen, case.contact
+    relaxes = timed and specimen.moduli == "long_term"
+    share = (1 - sum(term.g for term in specimen.prony)) ** 0.5 if relaxes else 1.0
     earliest = share * contact.half_width
     return earliest if contact.narrowest is None else min(earliest, contact.narrowest)
 
 
-def contact_reach(scene: Scene, contact: ContactEstimate) -> float:
-    """How far (m) the contact reaches to either side."""
-    return min(contact.half_width, scene.stimulus.face)
-
-
-def pressing_force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> float:
-    """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated
-    depth.
-    """
-    forces = [leg.force for leg in scene.motion if leg.force is not None]
-    return max(forces) / scene.specimen.contact_length if forces else pad.force_of(contact.depth)
-
-
-def rounding_of(
-    scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate
-) -> float:
-    """Length (m) of the contact on the rounded edges of a face."""
-    return pad.on_rounding(
-        pressing_force(scene, pad, contact),
-        profile.reach[1] - profile.edge_radius,
-        profile.edge_radius,
-    )
-
-
-def check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules: Rules) -> None:
+def _check_width(case: Case) -> None:
     """Refuses contacts narrower than any element."""
-    if contact.half_width >= rules.least_half_width:
+    scene, least = case.scene, case.rules.least_half_width
+    if case.contact.half_width >= least:
         return
-    force = pressing_force(scene, pad, contact)
-    least = rules.least_half_width * 1e9
     said = (
-        f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: "
-        f"{least:g} nm or more"
+        f"the contact would be {case.contact.half_width * 1e9:.2g} nm to either side; allowed: "
+        f"{least * 1e9:g} nm or more"
     )
-    usual = max(force, _USUAL_FORCE / scene.specimen.contact_length)
-    if pad.pressed(usual, max(scene.stimulus.convexity, 0.0)).half_width >= rules.least_half_width:
+    usual = max(case.force, _USUAL_FORCE / scene.specimen.contact_length)
+    if case.pad.pressed(usual, max(scene.stimulus.convexity, 0.0)).half_width >= least:
         i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if leg.presses)
         raise PlanError(f"motion[{i}].{leg.key}: so little that {said}")
     key = ".curvature" if hasattr(scene.stimulus, "curvature") else ""
     raise PlanError(f"stimulus{key}: so sharp that {said}")
 
 
-def inertia_ratio_of(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
-    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and
-    the fastest leg.
+def inertia_ratio(case: Case) -> float:
+    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects;
+    `PlanError` where it is too large.
     """
+    scene, limit = case.scene, case.rules.inertia_limit
     layers = scene.specimen.materials.values()
     softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in layers)
     speed = [0.0] * len(scene.motion)
     for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
         if leg.loads and (duration or leg.speed):
-            speed[i] = leg.speed or (leg.depth or contact.depth) / (leg.quickest or duration)
-    fastest = int(np.argmax(speed))
-    return 1000.0 * speed[fastest] ** 2 / softest, fastest
+            speed[i] = leg.speed or (leg.depth or case.contact.depth) / (leg.quickest or duration)
+    inertia = 1000.0 * max(speed) ** 2 / softest
+    if inertia > limit:
+        raise PlanError(
+            f"motion[{speed.index(max(speed))}]: so fast that inertia matters "
+            f"(rho v^2 / mu = {inertia:.2g}); allowed: up to {limit:g}"
+        )
+    return inertia

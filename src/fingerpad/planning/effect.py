@@ -6,8 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
+import numpy as np
+
+from fingerpad.planning.errors import Stroke, stroke_of
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.scenes.scene import Scene
 from fingerpad.scenes.specimen import Ridges
@@ -27,17 +31,67 @@ class Effect:
 class Case:
     """What a decision may ask about: the scene, its contact, what may be left out, and the effects
     decided before.
+
+    Attributes
+    ----------
+    external
+        The scene's own mesh, if it names one.
+    profile
+        What the usual mesh feels of the stimulus.
+    pad, contact
+        Estimated.
+    tolerance
+        Relative, what an effect left out may change.
     """
 
     scene: Scene
+    rules: Any
+    external: PadMesh | None
     profile: Profile
     pad: PadEstimate
-    contact: ContactEstimate
-    external: PadMesh | None
-    moves: bool
-    tolerance: float
-    rules: Any
-    decided: Mapping[str, Effect]
+    contact: ContactEstimate = ContactEstimate()
+    tolerance: float = 0.0
+    decided: Mapping[str, Effect] = field(default_factory=dict)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the pad moves along the surface."""
+        return any(leg.along for leg in self.scene.motion)
+
+    @property
+    def way(self) -> tuple[float, float]:
+        """Least and largest x (m) of the stimulus that comes over the middle of the pad."""
+        way = np.cumsum([0.0, *(leg.along for leg in self.scene.motion)])
+        return float(way.min()), float(way.max())
+
+    @property
+    def stroke(self) -> Stroke | None:
+        """The stroke along the surface, if there is one."""
+        return stroke_of(self.scene, self.profile.uneven)
+
+    @property
+    def reach(self) -> float:
+        """How far (m) the contact reaches to either side."""
+        return min(self.contact.half_width, self.scene.stimulus.face)
+
+    @property
+    def force(self) -> float:
+        """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated
+        depth.
+        """
+        forces = [leg.force for leg in self.scene.motion if leg.force is not None]
+        if forces:
+            return max(forces) / self.scene.specimen.contact_length
+        return self.pad.force_of(self.contact.depth)
+
+    @cached_property
+    def rounding(self) -> float:
+        """Length (m) of the contact on the rounded edges of a face; 0 where there are none."""
+        profile = self.profile
+        if not profile.edges or profile.unbounded:
+            return 0.0
+        face = profile.reach[1] - profile.edge_radius
+        return self.pad.on_rounding(self.force, face, profile.edge_radius)
 
 
 @dataclass(frozen=True)
@@ -118,10 +172,6 @@ class Meshed:
     said: str
 
 
-def _unchanged(parts: Parts) -> Parts:
-    return parts
-
-
 @dataclass(frozen=True)
 class PlannedEffect:
     """An effect that a plan decides on: all that the package knows of it.
@@ -148,7 +198,7 @@ class PlannedEffect:
         What it makes of the planned mesh (a case, its size, its edge at the apex in m); None:
         nothing.
     rules
-        Class of its rules, each a :func:`rule`; None for an effect without.
+        Name -> :func:`rule`.
     dearer
         Cost with it over cost without.
     shown
@@ -162,13 +212,13 @@ class PlannedEffect:
     name: str
     question: str
     decide: Callable[[Case], Effect]
-    turn_on: Callable[[Parts], Parts] = _unchanged
+    turn_on: Callable[[Parts], Parts] = lambda parts: parts
     possible: Callable[[Case], bool] = lambda case: True
     after: tuple[str, ...] = ()
     left_out: Callable[[Case], LeftOut] = lambda case: LeftOut()
     instead: str = ""
     mesh: Callable[[Case, MeshSize, float], Meshed] | None = None
-    rules: type | None = None
+    rules: Mapping[str, Any] = field(default_factory=dict)
     dearer: Callable[[Any], float] = lambda rules: 1.0
     shown: tuple[Shown, ...] = ()
     always: str = ""
@@ -188,3 +238,11 @@ def rule(value: Any, decides: str, evidence: str = "") -> Any:
     if isinstance(value, dict):
         return field(default_factory=value.copy, metadata=metadata)
     return field(default=value, metadata=metadata)
+
+
+# of scenes that show effects
+PLATE = {"stimulus": {"shape": "flat"}}
+CYLINDER = {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}}
+HOLD = {"hold": "2 s"}
+PRESS = {"press_to_force": "20 gf", "rate": "40 gf/s"}
+RAMP = {"motion": [PRESS, HOLD]}

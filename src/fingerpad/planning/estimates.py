@@ -40,9 +40,9 @@ class ContactEstimate:
     tip or a bump (None: the whole contact).
     """
 
-    half_width: float
-    depth: float
-    strain: float
+    half_width: float = 0.0
+    depth: float = 0.0
+    strain: float = 0.0
     narrowest: float | None = None
 
 
@@ -68,22 +68,14 @@ class PadEstimate:
             # thickness
             wavenumber = self.epidermis_thickness / half_width + 0.65
             modulus = self.stiff / layer_kernel(ratio, wavenumber)
-            before, half_width = (
-                half_width,
-                0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus))),
-            )
+            wider = np.sqrt(4 * force * radius / (np.pi * modulus))
+            before, half_width = half_width, 0.5 * (half_width + wider)
             if abs(half_width - before) <= _CLOSE * half_width:
                 break
-        depth = (
-            force
-            / (2 * np.pi * self.soft)
-            * (max(np.log(self.soft_thickness / half_width), 0.0) + 2.5)
-        )
-        return ContactEstimate(
-            float(half_width),
-            float(depth),
-            float(max(0.65 * half_width / radius, depth / self.soft_thickness)),
-        )
+        thick = max(np.log(self.soft_thickness / half_width), 0.0) + 2.5
+        depth = force / (2 * np.pi * self.soft) * thick
+        strain = max(0.65 * half_width / radius, depth / self.soft_thickness)
+        return ContactEstimate(float(half_width), float(depth), float(strain))
 
     def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
         """Contact at ``depth`` m: the force is sought first."""
@@ -91,13 +83,13 @@ class PadEstimate:
 
     def force_of(self, depth: float, curvature: float = 0.0) -> float:
         """Force (N/m) that presses to ``depth`` m."""
-        low, high = (1e-6, 1e6) if depth > self.pressed(1e-6, curvature).depth else (1e-30, 1e-6)
-        while high > (1 + _CLOSE) * low:
-            middle = np.sqrt(low * high)
-            low, high = (
-                (middle, high) if self.pressed(middle, curvature).depth < depth else (low, middle)
-            )
-        return float(np.sqrt(low * high))
+
+        def depth_of(log_force):
+            return self.pressed(np.exp(log_force), curvature).depth
+
+        least, most = np.log(1e-30), np.log(1e6)
+        depth = np.clip(depth, depth_of(least), depth_of(most))
+        return float(np.exp(brentq(lambda x: depth_of(x) - depth, least, most, xtol=_CLOSE)))
 
     def on_rounding(self, force: float, flat: float, radius: float) -> float:
         """How far (m) the contact of a face reaches into the rounding of its edge.
@@ -118,9 +110,8 @@ class PadEstimate:
         if flat < 1e-3 * radius:
             return float(min(np.sqrt(2 * load / np.pi), radius))
 
-        def excess(
-            angle,
-        ):  # between the edge of the face and that of the contact, seen on the circle over it
+        # between the edge of the face and that of the contact, seen on the circle over it
+        def excess(angle):
             return flat**2 * (angle / np.cos(angle) ** 2 - np.tan(angle)) - load
 
         top = np.arccos(flat / (flat + radius))
@@ -151,9 +142,8 @@ class PadEstimate:
         for scale in widest * 0.5 ** np.arange(0.0, 12.0, 0.5):
             middles = np.linspace(low, high, int(np.clip(4 * (high - low) / scale, 3, 4000)) | 1)
             sides = np.stack([outline(middles + shift) for shift in (-scale, 0.0, scale)])
-            slope = (sides[2] - sides[0]) / (
-                2 * scale
-            )  # a steep flank is no sharper for being steep
+            # a steep flank is no sharper for being steep
+            slope = (sides[2] - sides[0]) / (2 * scale)
             bends = (sides[0] + sides[2] - 2 * sides[1]) / (scale**2 * (1 + slope**2) ** 1.5)
             bend = np.nanmax(np.where(np.isnan(bends), -np.inf, bends))
             alone = self.pressed(force, float(max(bend, 0.0))).half_width

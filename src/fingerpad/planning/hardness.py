@@ -25,10 +25,10 @@ def hard_in(scene: Scene) -> tuple[str, ...]:
     """What is hard in a scene, in words, in the order in which the catalogue of hard cases tries
     less of it.
     """
-    return tuple(_found(scene))
+    return tuple(_hard(scene))
 
 
-def _found(scene: Scene) -> Iterator[str]:
+def _hard(scene: Scene) -> Iterator[str]:
     layers = list(scene.specimen.materials.values())
     moduli = [layer.youngs_modulus for layer in layers]
     if max(moduli) > _UNLIKE * min(moduli):

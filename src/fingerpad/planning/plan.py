@@ -17,16 +17,10 @@ import numpy as np
 
 from fingerpad.planning.bounds import PlanError, check_memory, check_size, micrometres, percent
 from fingerpad.planning.contact import (
-    check_over_pad,
-    check_width,
+    case_of,
     earliest_half_width,
     external_mesh,
-    inertia_ratio_of,
-    least_half_width,
-    moves_along,
-    pressing_force,
-    rounding_of,
-    way_of,
+    inertia_ratio,
     worst_contact,
 )
 from fingerpad.planning.discretisation import (
@@ -34,27 +28,23 @@ from fingerpad.planning.discretisation import (
     element_for,
     height_at_receptors,
     mesh_size_for,
-    peak_is_unbounded,
     preset_for,
     raised_for,
-    usual_edge,
-    wander_of,
+    unresolved_edge,
 )
 from fingerpad.planning.effect import Case, Effect, Parts
 from fingerpad.planning.effects import EFFECTS, in_order, parts_of
-from fingerpad.planning.errors import COARSER, estimated_error, own_errors, stroke_of
-from fingerpad.planning.estimates import ContactEstimate
+from fingerpad.planning.errors import COARSER, ContactErrors
 from fingerpad.planning.plan_data import Plan, read_plan
 from fingerpad.planning.rules import RULES, Preset, Rules
 from fingerpad.planning.schedule import expected_states, schedule
-from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
-from fingerpad.planning.surface import surface_of
+from fingerpad.planning.stack_estimate import specimen_said
+from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.planning.unbounded import Unbounded, ends_unbounded, in_words, seen_corners
-from fingerpad.scenes.scene import Discretisation, Scene, load_scene
+from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.measures import apex_edge, skin_ends
 from fingerpad.specimen.pad import MeshSize, PadMesh
-from fingerpad.stimuli.profile import Profile
 
 __all__ = ["RULES", "Plan", "PlanError", "Rules", "companion", "plan", "read_plan", "refined"]
 
@@ -112,68 +102,41 @@ def _planned(
     aim
         Relative error that the mesh is made for where that is less than the scene asks.
     """
-    external = external_mesh(scene)
-    measured = scene.stimulus
-    check_over_pad(scene, external)
-    # noise is no contact's curvature
-    profile = measured.felt(usual_edge(scene, external, rules))
-    pad = pad_estimate(scene.specimen, external, measured.face)
-    moves, stroke = moves_along(scene), stroke_of(scene, profile.uneven)
-    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets
-    # the sharpest convexity
-    curvature = profile.convexity if moves or not profile.uneven else 0.0
-    contact = worst_contact(scene, pad, profile, curvature)
-    contact = replace(contact, narrowest=least_half_width(scene, pad, profile, contact, narrowest))
-    check_width(scene, pad, contact, rules)
-    inertia = _inertia(scene, contact, rules)
-    rounded = profile.edges and not profile.unbounded
-    rounding = rounding_of(scene, pad, profile, contact) if rounded else 0.0
-    preset, by_hand = preset_for(scene, rules, contact, aim, stroke)
-    tolerance = preset.tolerance
-    case = Case(scene, profile, pad, contact, external, moves, tolerance, rules, {})
-    effects = _decided(case)
-    parts = parts_of(scene, effects)
-    left_out = {name: EFFECTS[name].left_out(case) for name in effects}
+    case = case_of(scene, rules, narrowest)
+    inertia = inertia_ratio(case)
+    preset = preset_for(case, aim)
+    case = replace(case, tolerance=preset.tolerance)
+    case = replace(case, decided=_decided(case))
+    effects, parts = dict(case.decided), parts_of(scene, case.decided)
+    timed, by_hand = parts.relaxes, scene.by_hand
 
-    timed = parts.relaxes
     steps_per_leg, slide_step, every = preset.steps, preset.slide_step, 1
-    if by_hand and by_hand.steps:
+    if by_hand.steps:
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
     elif timed:
         steps_per_leg = max(steps_per_leg, scene.outputs.per_leg or 0)
         every = steps_per_leg // preset.steps
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    contact_error: dict[str, Any] = {
-        "half_width": earliest_half_width(scene, contact, timed),
-        "steps": steps_per_leg / every if timed or moves else None,
-        "stroke": stroke,
-        "bumpy": scene.stimulus.irregular,
-        "rules": rules,
-    }
-    if external is None:
-        mesh = _built(case, preset, by_hand, effects, parts, rounding, contact_error)
-    else:
-        mesh = _given(case, external, by_hand, rounding, contact_error)
+    errors = ContactErrors(
+        rules,
+        earliest_half_width(case, timed),
+        steps_per_leg / every if timed or case.moves else None,
+        case.stroke,
+        scene.stimulus.irregular,
+    )
+    mesh = _built(case, preset, parts, errors) if case.external is None else _given(case, errors)
     nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
 
-    surface = surface_of(
-        measured,
-        mesh.edge,
-        way_of(scene),
-        pad,
-        partial(worst_contact, scene, pad, profile),
-        pressing_force(scene, pad, contact),
-        rules.profile_share * tolerance,
-    )
-    at_edges, edges_said = edges_error(profile, mesh.edge_at_edges, rounding, rules)
+    surface = surface_of(case, mesh.edge, partial(worst_contact, case))
+    at_edges, edges_said = edges_error(case, mesh.edge_at_edges)
     mesh_error = surface.error + max(mesh.in_contact, at_edges, mesh.at_receptors)
+    left_out = {name: EFFECTS[name].left_out(case) for name in effects}
     without = {name: left_out[name].error for name, effect in effects.items() if not effect.on}
     for name, error in list(without.items()):
-        total = sum(without.values()) + mesh_error
         asked = None if name in scene.effects else scene.tolerance
-        if error and asked is not None and total > asked:
+        if error and asked is not None and sum(without.values()) + mesh_error > asked:
             effects[name] = Effect(
                 True,
                 f"{EFFECTS[name].instead} would be wrong by up to {error:.1%} beside the mesh's "
@@ -182,22 +145,19 @@ def _planned(
             del without[name]
     sources = {
         f"edges of {micrometres(mesh.edge)} um in a contact of "
-        f"{micrometres(contact_error['half_width'])} um to either side": mesh.in_contact,
+        f"{micrometres(errors.half_width)} um to either side": mesh.in_contact,
         edges_said: at_edges,
         f"elements {mesh.place} that receptors are in": mesh.at_receptors,
         **{EFFECTS[name].instead: error for name, error in without.items()},
         "what the mesh cannot feel of the profile": surface.error,
     }
-    unresolved = peak_is_unbounded(profile, mesh.edge_at_edges, rounding, rules)
-    unresolved = unresolved and not profile.unbounded
-    final = measured.at(surface.smoothing, mesh.edge)
     instantaneous = any(each.moduli == "instantaneous" for each in left_out.values())
     return Plan(
         effects=effects | mesh.effects,
         state="instantaneous" if instantaneous else "long_term",
         element=mesh.element,
         mesh_size=mesh.size,
-        contact=contact,
+        contact=case.contact,
         steps_per_leg=steps_per_leg,
         slide_step=slide_step,
         steps=steps,
@@ -213,13 +173,17 @@ def _planned(
         error_from=max(sources, key=sources.__getitem__),
         asked_error=scene.tolerance,
         once=scene.once,
-        unbounded=_unbounded(case, final, mesh.external, mesh.edge, unresolved),
-        specimen=(*specimen_said(scene.specimen, mesh.external), *mesh.notes, *measured.notes),
+        unbounded=_unbounded(case, mesh, surface),
+        specimen=(
+            *specimen_said(scene.specimen, mesh.external),
+            *filter(None, [mesh.raised]),
+            *scene.stimulus.notes,
+        ),
         surface=surface,
-        strokes=moves,
+        strokes=case.moves,
         outputs=outputs,
         every=every,
-        unresolved_edge=unresolved,
+        unresolved_edge=unresolved_edge(case, mesh.edge_at_edges),
         errors=mesh.errors,
         receptor_height=mesh.receptor_height,
     )
@@ -231,6 +195,7 @@ class _Mesh:
 
     ``edge``: m, of the skin under the apex; ``edge_at_edges``: m, where the profile has edges.
     ``in_contact``, ``at_receptors``: relative errors. ``effects``: whose reasons name the mesh.
+    ``raised``: why an external mesh was raised to quadratic elements.
     """
 
     element: str
@@ -246,40 +211,28 @@ class _Mesh:
     external: PadMesh | None = None
     errors: dict[str, float] = field(default_factory=dict)
     receptor_height: float | None = None
-    notes: tuple[str, ...] = ()
+    raised: str = ""
 
 
-def _built(
-    case: Case,
-    preset: Preset,
-    by_hand: Discretisation | None,
-    effects: Mapping[str, Effect],
-    parts: Parts,
-    rounding: float,
-    contact_error: Mapping[str, Any],
-) -> _Mesh:
+def _built(case: Case, preset: Preset, parts: Parts, errors: ContactErrors) -> _Mesh:
     """A mesh that is built for the scene."""
-    scene, profile, pad, rules = case.scene, case.profile, case.pad, case.rules
+    scene, profile = case.scene, case.profile
     # on its way over a surface the contact is also flat
-    widest = case.contact
-    if case.moves and profile.uneven:
-        widest = worst_contact(scene, pad, profile, 0.0)
-    wander = wander_of(scene, pad, profile, parts.friction, rules) if case.moves else 0.0
-    size = mesh_size_for(
-        scene, preset, profile, case.contact, widest.half_width, wander, rounding, rules
-    )
+    flat = case.moves and profile.uneven
+    widest = worst_contact(case, 0.0) if flat else case.contact
+    size = mesh_size_for(case, preset, widest.half_width, parts.friction)
     # a contact that moves leaves the middle, where a stroked pad is finer
     at_apex = [] if case.moves else [edge for x, edge in size.focus if x == 0]
     edge = min([size.skin_edge, *at_apex])
     finest = min([edge, *(each for _, each in size.focus)])
-    at_receptors, meshed_effects = 0.0, {}
-    for name, effect in effects.items():
+    at_receptors, effects = 0.0, {}
+    for name, effect in case.decided.items():
         if effect.on and (mesh := EFFECTS[name].mesh):
             meshed = mesh(case, size, edge)
-            meshed_effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
+            effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
             size, edge = meshed.size, meshed.edge
             at_receptors = max(at_receptors, meshed.error)
-    check_size(scene, size, rules)
+    check_size(scene, size, case.rules)
     nodes, smallest = counted(scene.specimen, size, parts.ridges)
     edge_at_edges = min(edge, finest)
     if profile.edge_radius and scene.tolerance is None:
@@ -287,89 +240,68 @@ def _built(
         grown = edge_at_edges + np.log(size.growth) * profile.edge_radius
         edge_at_edges = min(grown, size.skin_edge)
     return _Mesh(
-        element_for(by_hand, None),
+        element_for(scene.by_hand.element, None),
         nodes,
         smallest,
         edge,
         edge_at_edges,
-        estimated_error(edge, body_edge=size.skin_edge, **contact_error),
+        errors.on_built_mesh(edge, size.skin_edge),
         "among ridges",
         size,
         at_receptors,
-        meshed_effects,
+        effects,
     )
 
 
-def _given(
-    case: Case,
-    external: PadMesh,
-    by_hand: Discretisation | None,
-    rounding: float,
-    contact_error: Mapping[str, Any],
-) -> _Mesh:
+def _given(case: Case, errors: ContactErrors) -> _Mesh:
     """The scene's own mesh, raised to quadratic elements where the accuracy needs it."""
-    scene, profile = case.scene, case.profile
+    scene = case.scene
 
-    def errors(mesh: PadMesh, element: str) -> dict[str, float]:
-        height = height_at_receptors(scene, mesh)
-        return own_errors(element, apex_edge(mesh), at_receptors=height, **contact_error)
+    def by_quantity(mesh: PadMesh, element: str) -> dict[str, float]:
+        return errors.on_own_mesh(element, apex_edge(mesh), height_at_receptors(scene, mesh))
 
     def largest(mesh: PadMesh) -> float:
-        at_edges, _ = edges_error(profile, apex_edge(mesh), rounding, case.rules)
-        return max(*errors(mesh, element_for(None, mesh)).values(), at_edges)
+        at_edges, _ = edges_error(case, apex_edge(mesh))
+        return max(*by_quantity(mesh, element_for(None, mesh)).values(), at_edges)
 
-    external, raised = raised_for(by_hand, external, case.tolerance, largest)
-    element, edge = element_for(by_hand, external), apex_edge(external)
-    by_quantity = errors(external, element)
+    external, raised = raised_for(case, largest)
+    element, edge = element_for(scene.by_hand.element, external), apex_edge(external)
+    found = by_quantity(external, element)
     return _Mesh(
         element,
         len(external.points),
         shortest_edge(external),
         edge,
         edge,
-        max(by_quantity.values()),
+        max(found.values()),
         "in the mesh",
         external=external,
-        errors=by_quantity,
+        errors=found,
         receptor_height=height_at_receptors(scene, external),
-        notes=tuple(filter(None, [raised])),
+        raised=raised,
     )
 
 
-def _inertia(scene: Scene, contact: ContactEstimate, rules: Rules) -> float:
-    """rho v^2 / mu of the motion, which a quasi-static solution neglects; refuses too large
-    ones.
-    """
-    inertia, fastest = inertia_ratio_of(scene, contact)
-    if inertia > rules.inertia_limit:
-        raise PlanError(
-            f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
-            f"allowed: up to {rules.inertia_limit:g}"
-        )
-    return inertia
-
-
-def _unbounded(
-    case: Case, profile: Profile, external: PadMesh | None, edge: float, unresolved: bool
-) -> Unbounded:
+def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
     """Where contact is expected at which pressure has no bound."""
-    scene, pad, half_width = case.scene, case.pad, case.contact.half_width
-    low, high = way_of(scene)
-    pressure = 2 / np.pi * pressing_force(scene, pad, case.contact) / half_width
-    corners = (
-        profile.tangents()
-        if unresolved
-        else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
-    )
+    half_width, (low, high) = case.contact.half_width, case.way
+    profile = case.scene.stimulus.at(surface.smoothing, mesh.edge)
+    if unresolved_edge(case, mesh.edge_at_edges):
+        corners = profile.tangents()
+    else:
+        pressure = 2 / np.pi * case.force / half_width
+        corners = seen_corners(
+            profile.corners(), case.pad.stiff, pressure, mesh.edge / 2, half_width
+        )
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
-    places, friction = list(in_words(profile, corners)), scene.friction > 0
-    if external is not None:
-        for node, angle in skin_ends(external):
-            x = external.points[node, 0]
+    places, friction = list(in_words(profile, corners)), case.scene.friction > 0
+    if mesh.external is not None:
+        for node, angle in skin_ends(mesh.external):
+            x = mesh.external.points[node, 0]
             if abs(x) <= half_width and ends_unbounded(angle, friction):
                 places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
-    centre = np.any((corners >= low - 2 * edge) & (corners <= high + 2 * edge))
-    return Unbounded(tuple(places), bool(centre))
+    near = (corners >= low - 2 * mesh.edge) & (corners <= high + 2 * mesh.edge)
+    return Unbounded(tuple(places), bool(near.any()))
 
 
 def refined(
@@ -423,29 +355,27 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
     An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way
     round, all others as they are.
     """
-    scheduled = list(
-        schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every)
-    )
+    out, parts, nodes = replace(own, stride=stride), own.parts(scene), 0
+    scheduled = list(schedule(scene, *out.stepping))
     steps = expected_states(scheduled, own.slide_step, stride)
-    out, parts = replace(own, stride=stride, steps=steps, outputs=len(scheduled)), own.parts(scene)
     if own.mesh_size is not None:
         size = own.mesh_size.coarser(coarser)
         nodes, smallest = counted(scene.specimen, size, parts.ridges)
-        nodes = nodes // 2 + 1 if parts.half else nodes
-        edge, error = coarser * own.contact_edge, coarser * own.estimated_error
         out = replace(
             out,
             mesh_size=size,
-            nodes=nodes,
             smallest_edge=smallest,
-            contact_edge=edge,
-            estimated_error=error,
+            contact_edge=coarser * own.contact_edge,
+            estimated_error=coarser * own.estimated_error,
         )
     elif (external := external_mesh(scene)) and external.element == "quad4":
         element = "Q1P0" if own.element == "Q2P1" else "Q2P1"
         nodes = len(external.elevated(element).points)
-        out = replace(out, element=element, nodes=nodes // 2 + 1 if parts.half else nodes)
-    return replace(out, predicted_cost_s=_cost(out.nodes, steps, out.effects, RULES))
+        out = replace(out, element=element)
+    if nodes:
+        out = replace(out, nodes=nodes // 2 + 1 if parts.half else nodes)
+    cost = _cost(out.nodes, steps, out.effects, RULES)
+    return replace(out, steps=steps, outputs=len(scheduled), predicted_cost_s=cost)
 
 
 def _decided(case: Case) -> dict[str, Effect]:

@@ -50,7 +50,9 @@ def schedule(
     remembers how it was loaded, and who gives the number of steps by hand (``slide_step`` None)
     wants to see them: then there are more.
     """
-    on_the_way = bool(scene.friction) or slide_step is None
+    increments = _ROUND_EDGES if scene.stimulus.singular else 1
+    if scene.friction or slide_step is None:
+        increments = _MOST_INCREMENTS
     return programme(
         scene.motion,
         steps=steps_per_leg,
@@ -59,10 +61,7 @@ def schedule(
         snapshots=scene.outputs.snapshots,
         present=present,
         slide_step=slide_step,
-        increments=min(
-            steps_per_leg,
-            _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1,
-        ),
+        increments=min(steps_per_leg, increments),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
         stride=stride,
         every=every,

@@ -30,7 +30,7 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
     """What a specimen is made of, held by and free at, and what its scene left out, in words;
     nothing of a thesis's outline.
     """
-    lines = []
+    lines, stack = [], specimen.stack
     if external is not None:
         wide, high = (np.ptp(external.points, axis=0) * 1e3).tolist()
         free = [name for name in external.curves if name not in (SKIN, UNNAMED, *external.fixed)]
@@ -42,26 +42,16 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
             f"held: {', '.join(external.fixed)}; free: {', '.join([SKIN, *free])}"
         )
         lines.append(_where_met(external))
-    elif specimen.stack is not None:
-        stack = specimen.stack
-        layers = ", ".join(
-            f"{name} {thick * 1e3:.3g} mm"
-            for name, thick in zip(stack.names, stack.thicknesses, strict=True)
-        )
-        if stack.radius is None:
-            lines.append(
-                f"a slab {stack.width * 1e3:.3g} mm wide: {layers}; held: base; free: {SKIN}, sides"
-            )
-        else:
-            core = (
-                ""
-                if stack.solid
-                else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
-            )
-            lines.append(
-                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; "
-                f"free: {SKIN}"
-            )
+    elif stack is not None:
+        kind, held, free = f"slab {2e3 * stack.half_width:.3g} mm wide", "base", f"{SKIN}, sides"
+        if stack.radius is not None:
+            kind, free = f"half-round of radius {stack.radius * 1e3:.3g} mm", SKIN
+            if not stack.solid:
+                core = (stack.radius - stack.soft_thickness) * 1e3
+                held = f"base and the core of radius {core:.3g} mm"
+        named = zip(stack.names, stack.thicknesses, strict=True)
+        layers = ", ".join(f"{name} {thick * 1e3:.3g} mm" for name, thick in named)
+        lines.append(f"a {kind}: {layers}; held: {held}; free: {free}")
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
 
 
@@ -97,63 +87,40 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
     relax = 1.0
     if specimen.moduli == "instantaneous" and specimen.prony:
         relax = 1 - sum(term.g for term in specimen.prony)
-    known = specimen.materials
-
-    def plane(name):
-        return known[name].youngs_modulus / (1 - known[name].poisson_ratio ** 2)
-
-    if external is not None:
-        radius, half_width = (
-            measures.apex_radius(external),
-            0.5 * float(np.ptp(external.points[external.curves["skin"], 0])),
-        )
-        below = measures.layers_below(external)
-    elif specimen.stack is not None:
-        stack = specimen.stack
-        radius, half_width, below = (
-            stack.radius or 1e3,
-            stack.half_width,
-            list(zip(stack.names, stack.thicknesses, strict=True)),
-        )
-    if specimen.outline is None and not (
-        external is not None
-        and {*REGIONS} <= {*external.regions}
-        and "bone" in external.curves
-        and radius < _FLAT * half_width
-    ):
-        layers = [(thickness, specimen.material(name)) for name, thickness in below]
-        first, softest = (
-            layers[0],
-            min(layer.youngs_modulus / (1 - layer.poisson_ratio**2) for _, layer in layers),
-        )
-        return StackEstimate(
-            radius,
-            first[0],
-            sum(thickness for thickness, _ in layers),
-            relax * first[1].youngs_modulus / (1 - first[1].poisson_ratio ** 2),
-            relax * softest,
-            min(half_width, reach),
-            tuple(
-                (thickness, relax * layer.youngs_modulus, layer.poisson_ratio)
-                for thickness, layer in layers
-            ),
-        )
-    if external is None:
-        outline = specimen.outline
-        radius, epidermis, soft = (
-            outline.apex_radius,
-            outline.epidermis_thickness,
-            outline.soft_thickness,
-        )
+    outline, stack = specimen.outline, specimen.stack
+    if outline is not None:
+        finger = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
+    elif stack is not None:
+        finger, radius, half_width = None, stack.radius or 1e3, stack.half_width
+        below = zip(stack.names, stack.thicknesses, strict=True)
     else:
-        radius, epidermis, soft = measures.apex_measures(external)
-    return PadEstimate(
+        radius, below = measures.apex_radius(external), measures.layers_below(external)
+        half_width = 0.5 * float(np.ptp(external.points[external.curves["skin"], 0]))
+        has_bone = {*REGIONS} <= {*external.regions} and "bone" in external.curves
+        curved = radius < _FLAT * half_width
+        finger = measures.apex_measures(external) if has_bone and curved else None
+    if finger is not None:
+        stiff, *soft = (_plane(specimen.materials[name]) for name in REGIONS)
+        return PadEstimate(*finger, relax * stiff, relax * min(soft))
+    layers = [(thickness, specimen.material(name)) for name, thickness in below]
+    thickness, outermost = layers[0]
+    return StackEstimate(
         radius,
-        epidermis,
-        soft,
-        relax * plane("epidermis"),
-        relax * min(plane("dermis"), plane("fat")),
+        thickness,
+        sum(thickness for thickness, _ in layers),
+        relax * _plane(outermost),
+        relax * min(_plane(layer) for _, layer in layers),
+        min(half_width, reach),
+        tuple(
+            (thickness, relax * layer.youngs_modulus, layer.poisson_ratio)
+            for thickness, layer in layers
+        ),
     )
+
+
+def _plane(layer) -> float:
+    """Plane modulus E / (1 - nu^2), Pa."""
+    return layer.youngs_modulus / (1 - layer.poisson_ratio**2)
 
 
 @dataclass(frozen=True)
@@ -212,24 +179,20 @@ class StackEstimate(PadEstimate):
         limit, thick = self.half_width, self.soft_thickness
         narrowest = min(_NARROWEST * thick, 0.1 * limit)
         bend = 1 / self.apex_radius + max(curvature, 0.0)
+
+        def excess(log_half_width):
+            return self._curved(np.exp(log_half_width), curvature)[which] - wanted
+
         if self._curved(limit, curvature)[which] <= wanted:
-            half_width, sinking = limit, self._under_plate(limit)
-            depth = wanted if which else wanted * sinking
+            half_width, depth = limit, wanted * self._under_plate(limit)
         elif self._curved(narrowest, curvature)[which] >= wanted:
-            half_width = narrowest
-            depth = wanted if which else self._curved(narrowest, curvature)[1]
+            half_width, depth = narrowest, self._curved(narrowest, curvature)[1]
         else:
-            half_width = np.exp(
-                brentq(
-                    lambda a: self._curved(np.exp(a), curvature)[which] - wanted,
-                    np.log(narrowest),
-                    np.log(limit),
-                )
-            )
+            half_width = np.exp(brentq(excess, np.log(narrowest), np.log(limit)))
             depth = self._curved(half_width, curvature)[1]
-        return ContactEstimate(
-            float(half_width), float(depth), float(max(0.65 * half_width * bend, depth / thick))
-        )
+        depth = wanted if which else depth
+        strain = max(0.65 * half_width * bend, depth / thick)
+        return ContactEstimate(float(half_width), float(depth), float(strain))
 
     def pressed(self, force: float, curvature: float) -> ContactEstimate:
         """Contact under ``force`` N/m by a profile of ``curvature`` 1/m at its lowest point."""

@@ -9,8 +9,8 @@ from math import erf
 import numpy as np
 
 from fingerpad.planning.bounds import percent
-from fingerpad.planning.estimates import ContactEstimate, PadEstimate
-from fingerpad.stimuli.profile import Profile
+from fingerpad.planning.effect import Case
+from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.stimuli.smoothing import WAVE, finer_than
 
 _FELT_BY_NOBODY = 0.05e-6  # m
@@ -70,16 +70,8 @@ def touching_share(pressure: float, modulus: float, slope: float) -> float:
     return erf(np.sqrt(2) * pressure / (modulus * slope)) if slope else 1.0
 
 
-def surface_of(
-    profile: Profile,
-    edge: float,
-    way: tuple[float, float],
-    pad: PadEstimate,
-    pressed: Callable[[float], ContactEstimate],
-    force: float,
-    allowed: float = 0.0,
-) -> Surface:
-    """How ``profile`` comes to skin with nodes ``edge`` m apart.
+def surface_of(case: Case, edge: float, pressed: Callable[[float], ContactEstimate]) -> Surface:
+    """How the profile comes to skin with nodes ``edge`` m apart.
 
     A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985,
     section 13.2): the slopes of the octave above the cut-off, against the pressure where it
@@ -90,15 +82,10 @@ def surface_of(
 
     Parameters
     ----------
-    way
-        m, least and largest x of the profile that comes over the pad's apex.
     pressed
         The deepest contact with a surface of a curvature (1/m).
-    force
-        N/m, that presses at most.
-    allowed
-        Relative error that may be left to the profile.
     """
+    profile, stiff, way = case.scene.stimulus, case.pad.stiff, case.way
     if not np.isfinite(profile.known).all():
         return Surface()
     felt, curvature = profile.felt(edge), 0.0
@@ -107,33 +94,27 @@ def surface_of(
         curvature = max(felt.bulge(way[0], contact.half_width), 0.0)
     half = contact.half_width
     first, last = way[0] - 1.2 * half, way[1] + 1.2 * half
-    ends = [
-        end
-        for end, over in zip(
-            profile.known, (profile.known[0] - first, last - profile.known[1]), strict=True
-        )
-        if over > 0
-    ]
+    low, high = profile.known
+    ends = [end for end, reached in ((low, low > first), (high, high < last)) if reached]
     end = min(ends, key=abs, default=None)
     cutoffs = profile.cutoffs(edge)
     if cutoffs == [0.0]:
         return Surface(end=end)
-    nominal = force / (2 * half)
+    nominal = case.force / (2 * half)
 
     def smoothed(cutoff):
         felt, longer = profile.at(cutoff, edge), max(2 * cutoff, WAVE * edge)
-        x = np.linspace(
-            *np.clip([first, last], *profile.known), int((last - first) / (longer / 2) * 16) + 33
-        )
+        places = int((last - first) / (longer / 2) * 16) + 33
+        x = np.linspace(*np.clip([first, last], low, high), places)
         fine = finer_than(x, felt.outline(x), longer)
         slope, steep = np.abs(np.gradient(fine, x)).max(), np.std(np.gradient(felt.outline(x), x))
-        pressure = nominal / touching_share(nominal, pad.stiff, float(steep))
-        error = slope * pad.stiff / 2 / pressure + np.ptp(fine) / 2 / max(contact.depth, 1e-9)
+        pressure = nominal / touching_share(nominal, stiff, float(steep))
+        error = slope * stiff / 2 / pressure + np.ptp(fine) / 2 / max(contact.depth, 1e-9)
         return Surface(cutoff, felt.moved(first, last), float(error), end)
 
     found = []
     for cutoff in cutoffs:
         found.append(smoothed(cutoff))
-        if found[-1].error <= allowed:
+        if found[-1].error <= case.rules.profile_share * case.tolerance:
             return found[-1]
     return min(found, key=lambda surface: surface.error)

@@ -89,19 +89,15 @@ def in_words(profile: Profile, x: np.ndarray) -> tuple[str, ...]:
     if not len(x):
         return ()
     at_end = np.isin(x, profile.reach) & (not profile.edges)
-    corner = ("corner", "corners")
+    corner, what = "corner", ""
     if profile.edges:
-        corner = (
-            ("edge", "edges")
-            if profile.unbounded
-            else ("edge finer than the mesh", "edges finer than the mesh")
-        )
-    kinds = {
-        ("end of the profile's points", "ends of the profile's points"): x[at_end],
-        corner: x[~at_end],
-    }
+        corner, what = "edge", "" if profile.unbounded else " finer than the mesh"
     out = []
-    for (name, names), places in kinds.items():
+    for noun, of, places in (
+        ("end", " of the profile's points", x[at_end]),
+        (corner, what, x[~at_end]),
+    ):
+        name, names = f"{noun}{of}", f"{noun}s{of}"
         mm = np.unique(np.round(places * 1e3, 4)) + 0.0
         if len(mm) == 1:
             out.append(f"the {name} at x = {mm[0]:.4g} mm")

@@ -96,18 +96,17 @@ def rests_on(path: str | Path) -> list[Path]:
     Of what is not there nothing is said: reading the scene does.
     """
     written, source = read_scene(path), Source(Path(path))
-    named, files = {DEFAULT_SPECIMEN}, []
-    todo = [written.document]
+    specimens, files = source.specimen_files(), []
+    named, todo = {DEFAULT_SPECIMEN}, [written.document]
     while todo:
         part = todo.pop()
         for key, value in part.items() if isinstance(part, Mapping) else ():
-            if key in ("mesh", "csv", "table") and isinstance(value, str):
-                files.append(source.resolve(value))
-            elif isinstance(value, str):
-                named.add(value)
-            else:
+            if not isinstance(value, str):
                 todo.append(value)
-    specimens = source.specimen_files()
+            elif key in ("mesh", "csv", "table"):
+                files.append(source.resolve(value))
+            else:
+                named.add(value)
     return [*written.files, *(specimens[name] for name in sorted(named & specimens.keys())), *files]
 
 
@@ -153,19 +152,21 @@ def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]
     if problem:
         raise _wrong(path, ("extends",), named, problem, allowed)
     below, files = _extended(base, (*seen, path))
-    axes = []
-    for file, part in ((path, document), (base, below)):
-        over, key = HIDE, ()
-        if isinstance(part, Mapping):
-            over, key = part.get("over") or {}, ("over",)
-        if not isinstance(over, Mapping):
-            raise _wrong(file, key, over, "is not a mapping of keys", "keys, with a value for each")
-        axes.append({str(axis): _by_word(words) for axis, words in over.items()})
-    own, given = axes
-    over = {axis: _taken(path, axis, given.get(axis), words) for axis, words in own.items()}
-    over |= {axis: words for axis, words in given.items() if axis not in over}
+    own, given = _over(path, document), _over(base, below)
+    taken = {axis: _taken(path, axis, given.get(axis), words) for axis, words in own.items()}
+    over = taken | {axis: words for axis, words in given.items() if axis not in taken}
     whole = merged(_without(below, "over"), _without(document, "over", "extends"))
     return whole | ({"over": over} if over else {}), (path, *files)
+
+
+def _over(path: Path, document: Any) -> dict[str, Any]:
+    """What is under ``over`` of a document, if anything, by axes as text."""
+    over, key = HIDE, ()
+    if isinstance(document, Mapping):
+        over, key = document.get("over") or {}, ("over",)
+    if not isinstance(over, Mapping):
+        raise _wrong(path, key, over, "is not a mapping of keys", "keys, with a value for each")
+    return {str(axis): _by_word(words) for axis, words in over.items()}
 
 
 def _without(document: Mapping[str, Any], *keys: str) -> dict[str, Any]:

@@ -37,10 +37,13 @@ from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
     HalfRound,
+    InnerRidges,
     Layer,
     Layers,
+    OuterRidges,
     Outline,
     PronyTerm,
+    Ridges,
     Slab,
     Source,
     Specimen,
@@ -207,9 +210,8 @@ class Discretisation(Strict):
     def _check(self) -> Discretisation:
         for key in ("skin_edge", "steps"):
             if self.tolerance is not None and getattr(self, key) is not None:
-                raise Problem(
-                    "is given beside a tolerance, which chooses it", "one of both", (key,)
-                )
+                problem = "is given beside a tolerance, which chooses it"
+                raise Problem(problem, "one of both", (key,))
         return self
 
 
@@ -336,26 +338,19 @@ class Scene(Strict):
         except Problem as problem:
             raise problem.below("motion") from None
         self._check_inside()
-        end = self.end_time
-        if self.outputs.responses and end == 0:
-            raise Problem(
-                "needs a motion that takes time",
-                "a rate, a speed or a hold in it",
-                ("outputs", "responses"),
-            )
-        if isinstance(self.outputs.snapshots, Every):
+        outputs, end = self.outputs, self.end_time
+        if outputs.responses and end == 0:
+            allowed = "a rate, a speed or a hold in it"
+            raise Problem("needs a motion that takes time", allowed, ("outputs", "responses"))
+        if isinstance(outputs.snapshots, Every):
             # the model is frozen, and only here is the motion known
-            times = self._times(self.outputs.snapshots.every)
-            object.__setattr__(
-                self, "outputs", self.outputs.model_copy(update={"snapshots": times})
-            )
+            times = {"snapshots": self._times(outputs.snapshots.every)}
+            object.__setattr__(self, "outputs", outputs.model_copy(update=times))
         for i, time in enumerate(self.outputs.snapshots):
             if end is not None and time > end * (1 + 1e-9):
-                raise Problem(
-                    "is after the end of the motion",
-                    f"up to {format_quantity(end, 'time')}",
-                    ("outputs", "snapshots", i),
-                )
+                key = ("outputs", "snapshots", i)
+                allowed = f"up to {format_quantity(end, 'time')}"
+                raise Problem("is after the end of the motion", allowed, key)
         return self
 
     def _times(self, every: float) -> tuple[float, ...]:
@@ -375,20 +370,20 @@ class Scene(Strict):
         if thickness is None or half_width is None:  # a mesh
             return
         ground = "bone" if self.specimen.stack is None else "base"
-        deep = format_quantity(thickness, "length")
+        deep, widest = (format_quantity(length, "length") for length in (thickness, half_width))
         below = f"above 0 mm and below the {deep} from the skin to the {ground}"
-        widest = format_quantity(half_width, "length")
+        receptors, key = self.outputs.receptors, ("outputs", "receptors")
         for i, leg in enumerate(self.motion):
             if leg.depth is not None and leg.depth >= thickness:
                 raise Problem(f"presses to the {ground}", below, ("motion", i, "press_to_depth"))
-        for i, depth in enumerate(self.outputs.receptors.depths):
+        for i, depth in enumerate(receptors.depths):
             if depth >= thickness:
-                raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
-        for i, offset in enumerate(self.outputs.receptors.offsets):
+                raise Problem("is outside the skin", below, (*key, "depths", i))
+        for i, offset in enumerate(receptors.offsets):
             if abs(offset) >= half_width:
-                side, key = f"within {widest} of the middle", ("outputs", "receptors", "offsets", i)
-                raise Problem("is beside the pad", side, key)
-        edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
+                side = f"within {widest} of the middle"
+                raise Problem("is beside the pad", side, (*key, "offsets", i))
+        edge = self.by_hand.skin_edge
         if edge is not None and edge >= half_width:
             raise Problem("is larger than the pad", f"below {widest}", ("accuracy", "skin_edge"))
 
@@ -400,17 +395,19 @@ class Scene(Strict):
         return end_time(self.motion)
 
     @property
+    def by_hand(self) -> Discretisation:
+        """The discretisation by hand; an empty one where the accuracy is a name or a tolerance."""
+        return self.accuracy if isinstance(self.accuracy, Discretisation) else Discretisation()
+
+    @property
     def tolerance(self) -> float | None:
         """Relative error asked for; None for a preset or a discretisation by hand."""
-        asked = (
-            self.accuracy.tolerance if isinstance(self.accuracy, Discretisation) else self.accuracy
-        )
-        return asked if isinstance(asked, float) else None
+        return self.accuracy if isinstance(self.accuracy, float) else self.by_hand.tolerance
 
     @property
     def once(self) -> bool:
         """Whether the scene is to be run once, whatever the run's own estimate of its error."""
-        return isinstance(self.accuracy, Discretisation) and self.accuracy.once
+        return self.by_hand.once
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.
@@ -463,7 +460,8 @@ class Scene(Strict):
         data = self.model_dump(mode="json")
         mesh = self.specimen.mesh
         if mesh is not None:
-            data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
+            digest = hashlib.sha256(mesh.read_bytes()).hexdigest()
+            data["specimen"]["mesh"] = {"name": mesh.name, "sha256": digest}
         data["stimulus"] |= self.stimulus.recorded()
         return json.loads(json.dumps(data, sort_keys=True))
 
@@ -476,12 +474,11 @@ def recorded_scene(data: Mapping[str, Any]) -> Scene:
     SceneError
         The description is not of a scene this version knows.
     """
-    data = dict(data)
-    mesh, stimulus = data["specimen"]["mesh"], data["stimulus"]
+    specimen, mesh = data["specimen"], data["specimen"]["mesh"]
     if mesh is not None:
-        data["specimen"] = data["specimen"] | {"mesh": Path(mesh["name"])}
-    data["stimulus"] = {key: value for key, value in stimulus.items() if key != "sha256"}
-    return scene_of_record(data)
+        specimen = specimen | {"mesh": Path(mesh["name"])}
+    stimulus = {key: value for key, value in data["stimulus"].items() if key != "sha256"}
+    return scene_of_record({**data, "specimen": specimen, "stimulus": stimulus})
 
 
 def scene_of_record(data: Mapping[str, Any]) -> Scene:
@@ -530,10 +527,6 @@ def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
             except ValidationError:
                 break  # said where the specimen is read
     return ()
-
-
-def _sha256(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
 
 
 def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scene") -> Scene:
@@ -590,18 +583,9 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
 def scene_json_schema() -> dict[str, Any]:
     """JSON schema of a scene document as people write it (text with units, names of specimens)."""
     schema = Scene.model_json_schema(mode="validation")
-    for name in (
-        "Outline",
-        "Layers",
-        "Layer",
-        "Ridges",
-        "InnerRidges",
-        "OuterRidges",
-        "Receptors",
-        "Outputs",
-        "Specimen",
-    ):
-        schema["$defs"][name].pop("required", None)
+    ridges = (Ridges, InnerRidges, OuterRidges)
+    for model in (Outline, Layers, Layer, *ridges, Receptors, Outputs, Specimen):
+        schema["$defs"][model.__name__].pop("required", None)
     one = {"type": "object", "minProperties": 1}
     schema["properties"] |= {
         "extends": {

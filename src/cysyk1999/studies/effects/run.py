@@ -346,12 +346,7 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
     """Every rule of the planner: value, what it decides and its evidence. ``pairs``: of
     :func:`study`.
     """
-    owner = {
-        known.name: name
-        for name, effect in EFFECTS.items()
-        if effect.rules
-        for known in fields(effect.rules)
-    }
+    owner = {rule: name for name, effect in EFFECTS.items() for rule in effect.rules}
     rows = []
     for known in fields(Rules):
         about = known.metadata["evidence"]

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from fingerpad.laws import departure
-from fingerpad.planning.effect import Case, Effect, LeftOut, PlannedEffect, Shown, rule
-
-
-@dataclass(frozen=True)
-class FiniteStrainRules:
-    """Small strain is used where its error is within the accuracy."""
-
-    small_strain_error: float = rule(
-        4.6, "finite strain: on when this times depth / soft thickness exceeds the accuracy"
-    )
+from fingerpad.planning.effect import (
+    CYLINDER,
+    PLATE,
+    RAMP,
+    Case,
+    Effect,
+    LeftOut,
+    PlannedEffect,
+    Shown,
+    rule,
+)
 
 
 def small_strain_error(case: Case) -> float:
@@ -44,8 +45,8 @@ def decide(case: Case) -> Effect:
     return Effect(error > case.tolerance, why)
 
 
-_RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
-_LIGHT = [{"press_to_force": "0.02 gf", "rate": "0.04 gf/s"}, {"hold": "2 s"}]
+NEEDLE = {"stimulus": {"shape": "cylinder", "curvature": "1259.84 1/m"}}
+LIGHT = {"motion": [{"press_to_force": "0.02 gf", "rate": "0.04 gf/s"}, {"hold": "2 s"}]}
 
 EFFECT = PlannedEffect(
     name="finite_strain",
@@ -54,24 +55,21 @@ EFFECT = PlannedEffect(
     turn_on=lambda parts: replace(parts, large_strain=True),
     left_out=lambda case: LeftOut(small_strain_error(case)),
     instead="small strain",
-    rules=FiniteStrainRules,
+    # small strain is used where its error is within the accuracy
+    rules={
+        "small_strain_error": rule(
+            4.6, "finite strain: on when this times depth / soft thickness exceeds the accuracy"
+        )
+    },
     dearer=lambda rules: (
         rules.seconds_finite
         * rules.iterations_finite
         / (rules.seconds_small * rules.iterations_small)
     ),
     shown=(
-        Shown(
-            "20 gf, 1260 1/m",
-            True,
-            {"stimulus": {"shape": "cylinder", "curvature": "1259.84 1/m"}, "motion": _RAMP},
-        ),
-        Shown("20 gf, flat", True, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
-        Shown(
-            "0.02 gf, 210 1/m",
-            False,
-            {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _LIGHT},
-        ),
+        Shown("20 gf, 1260 1/m", True, NEEDLE | RAMP),
+        Shown("20 gf, flat", True, PLATE | RAMP),
+        Shown("0.02 gf, 210 1/m", False, CYLINDER | LIGHT),
     ),
     title="finite strain",
     marker="^",

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from fingerpad.planning.effect import OWN_PAIR, Case, Effect, PlannedEffect, Shown, rule
-
-
-@dataclass(frozen=True)
-class FrictionRules:
-    """Friction is left out of presses when what it changes is within the accuracy."""
-
-    pressing_friction: float = rule(
-        2.0, "friction of a press: on when this times the coefficient exceeds the accuracy"
-    )
-    most_pressing_friction: float = rule(
-        0.2, "friction of a press: what that product comes to at most", OWN_PAIR
-    )
-    frictional: float = rule(
-        1.2, "predicted cost: a step with friction over one without", "figures/tables/speed.md"
-    )
+from fingerpad.planning.effect import (
+    CYLINDER,
+    OWN_PAIR,
+    PLATE,
+    PRESS,
+    RAMP,
+    Case,
+    Effect,
+    PlannedEffect,
+    Shown,
+    rule,
+)
 
 
 def decide(case: Case) -> Effect:
@@ -30,16 +26,14 @@ def decide(case: Case) -> Effect:
     if any(leg.strokes for leg in case.scene.motion):
         return Effect(True, f"the skin is stroked with a coefficient of {coefficient:g}")
     worth = min(rules.pressing_friction * coefficient, rules.most_pressing_friction)
-    number = (
-        f"in a press a coefficient of {coefficient:g} changes up to {worth:.1%}, "
+    why = (
+        f"nothing slides; in a press a coefficient of {coefficient:g} changes up to {worth:.1%}, "
         f"{case.tolerance:.1%} is allowed"
     )
-    return Effect(worth > case.tolerance, f"nothing slides; {number}")
+    return Effect(worth > case.tolerance, why)
 
 
-_PLATE, _CYLINDER = {"shape": "flat"}, {"shape": "cylinder", "curvature": "209.97 1/m"}
-_RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
-_STROKE = [_RAMP[0], {"slide": "4 mm", "speed": "10 mm/s"}]
+STROKE = {"motion": [PRESS, {"slide": "4 mm", "speed": "10 mm/s"}]}
 
 EFFECT = PlannedEffect(
     name="friction",
@@ -47,21 +41,24 @@ EFFECT = PlannedEffect(
     decide=decide,
     turn_on=lambda parts: replace(parts, friction=parts.scene.friction),
     possible=lambda case: case.scene.friction != 0,
-    rules=FrictionRules,
+    # friction is left out of presses when what it changes is within the accuracy
+    rules={
+        "pressing_friction": rule(
+            2.0, "friction of a press: on when this times the coefficient exceeds the accuracy"
+        ),
+        "most_pressing_friction": rule(
+            0.2, "friction of a press: what that product comes to at most", OWN_PAIR
+        ),
+        "frictional": rule(
+            1.2, "predicted cost: a step with friction over one without", "figures/tables/speed.md"
+        ),
+    },
     dearer=lambda rules: rules.frictional,
     always="friction: whenever the skin is stroked with a coefficient above 0",
     shown=(
-        Shown(
-            "stroke of a plate, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _STROKE}
-        ),
-        Shown(
-            "pressed only, flat, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _RAMP}
-        ),
-        Shown(
-            "pressed only, 210 1/m, 0.01",
-            False,
-            {"stimulus": _CYLINDER, "friction": 0.01, "motion": _RAMP},
-        ),
+        Shown("stroke of a plate, 0.7", True, PLATE | STROKE | {"friction": 0.7}),
+        Shown("pressed only, flat, 0.7", True, PLATE | RAMP | {"friction": 0.7}),
+        Shown("pressed only, 210 1/m, 0.01", False, CYLINDER | RAMP | {"friction": 0.01}),
     ),
     title="friction",
     marker="D",

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from fingerpad.planning.bounds import PlanError, check_size, micrometres
-from fingerpad.planning.effect import Case, Effect, Meshed, PlannedEffect, Shown, rule
+from fingerpad.planning.effect import (
+    CYLINDER,
+    RAMP,
+    Case,
+    Effect,
+    Meshed,
+    PlannedEffect,
+    Shown,
+    rule,
+)
 from fingerpad.scenes.scene import Scene
 from fingerpad.scenes.specimen import Ridges
 from fingerpad.specimen.layered import apex_column, ridge_resolution, skin_edge
@@ -16,44 +25,6 @@ from fingerpad.specimen.pad import MeshSize, all_over
 from fingerpad.specimen.ridges import wave_of
 
 _ROUND_OFF = 1e-12
-
-
-@dataclass(frozen=True)
-class RidgeRules:
-    """Low inner ridges are left out of presses when what they change is within the accuracy."""
-
-    ridge_change: float = rule(
-        3.0, "ridges, inner, pressed: on when this times height / pitch exceeds the accuracy"
-    )
-    ridge_width: float = rule(
-        1 / 3,
-        "half width of the contact, over the pitch, below which ridges change the more the "
-        "narrower it is",
-    )
-    ridge_contrast: float = rule(
-        11.0,
-        "ridges: always on where the epidermis is stiffer than this times the dermis",
-        "the thesis's moduli, 10; not studied beyond",
-    )
-    ridge_error: float = rule(
-        7.0,
-        "error of strain energies beside ridges: this times height / pitch, times (element / "
-        "pitch) to a power",
-        "figures/tables/accuracy_ridges.csv",
-    )
-    ridge_order: float = rule(1.5, "that power", "figures/tables/accuracy_ridges.csv")
-    ridge_stroked: float = rule(
-        0.5,
-        "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose "
-        "rates follow from them",
-        "figures/studies/accuracy_shown.csv",
-    )
-    ridge_near: float = rule(
-        2.0,
-        "receptors are beside ridges within so many heights of the depth at which the epidermis "
-        "ends",
-        "figures/tables/accuracy_ridges.csv",
-    )
 
 
 def decide(case: Case) -> Effect:
@@ -89,7 +60,7 @@ def decide(case: Case) -> Effect:
     )
 
 
-def _felt(scene: Scene, rules: RidgeRules) -> bool:
+def _felt(scene: Scene, rules: Any) -> bool:
     """Whether a receptor is beside ridges."""
     border, height = scene.specimen.outline.epidermis_thickness, scene.specimen.ridges.inner.height
     return any(
@@ -97,7 +68,7 @@ def _felt(scene: Scene, rules: RidgeRules) -> bool:
     )
 
 
-def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
+def error_beside(inner: Any, elements: float, rules: Any) -> float:
     """Relative error of strain energies beside inner ridges, with so many elements from one ridge
     to the next.
     """
@@ -127,7 +98,7 @@ def _finer(case: Case, size: MeshSize) -> tuple[MeshSize, float]:
         return size, 0.0
     ridges = scene.specimen.ridges
     wave, column = wave_of(ridges.inner), apex_column(size, ridges)
-    by_hand = getattr(scene.accuracy, "skin_edge", None) is not None
+    by_hand = scene.by_hand.skin_edge is not None
     share = rules.ridge_stroked if case.moves else 1.0
     allowed = np.inf if by_hand else case.tolerance * share
     needed = (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order)
@@ -151,11 +122,6 @@ def _check_ridges(ridges: Ridges, most_nodes: float) -> None:
         )
 
 
-_PRESS = {
-    "stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"},
-    "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}],
-}
-
 EFFECT = PlannedEffect(
     name="ridges",
     question="do ridges change the answers?",
@@ -163,14 +129,48 @@ EFFECT = PlannedEffect(
     turn_on=lambda parts: replace(parts, ridges=parts.scene.specimen.ridges),
     mesh=mesh,
     possible=lambda case: case.scene.specimen.ridges is not None,
-    rules=RidgeRules,
+    # low inner ridges are left out of presses when what they change is within the accuracy
+    rules={
+        "ridge_change": rule(
+            3.0, "ridges, inner, pressed: on when this times height / pitch exceeds the accuracy"
+        ),
+        "ridge_width": rule(
+            1 / 3,
+            "half width of the contact, over the pitch, below which ridges change the more the "
+            "narrower it is",
+        ),
+        "ridge_contrast": rule(
+            11.0,
+            "ridges: always on where the epidermis is stiffer than this times the dermis",
+            "the thesis's moduli, 10; not studied beyond",
+        ),
+        "ridge_error": rule(
+            7.0,
+            "error of strain energies beside ridges: this times height / pitch, times (element / "
+            "pitch) to a power",
+            "figures/tables/accuracy_ridges.csv",
+        ),
+        "ridge_order": rule(1.5, "that power", "figures/tables/accuracy_ridges.csv"),
+        "ridge_stroked": rule(
+            0.5,
+            "share of a tolerance that strain energies beside ridges are meshed for in strokes, "
+            "whose rates follow from them",
+            "figures/studies/accuracy_shown.csv",
+        ),
+        "ridge_near": rule(
+            2.0,
+            "receptors are beside ridges within so many heights of the depth at which the "
+            "epidermis ends",
+            "figures/tables/accuracy_ridges.csv",
+        ),
+    },
     always="ridges: in strokes, outer ones, and near receptors whenever the specimen has them",
     shown=(
-        Shown("inner, 0.15 mm high", True, _PRESS | {"specimen": {"ridges": "inner"}}),
+        Shown("inner, 0.15 mm high", True, CYLINDER | RAMP | {"specimen": {"ridges": "inner"}}),
         Shown(
             "inner, 3 um high",
             False,
-            _PRESS | {"specimen": {"ridges": {"inner": {"height": "3 um"}}}},
+            CYLINDER | RAMP | {"specimen": {"ridges": {"inner": {"height": "3 um"}}}},
         ),
     ),
     title="ridges",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown
+from fingerpad.planning.effect import CYLINDER, PLATE, RAMP, Case, Effect, PlannedEffect, Shown
 from fingerpad.specimen.ridges import RidgedPad
 
 
@@ -24,12 +24,13 @@ def decide(case: Case) -> Effect:
     )
 
 
-_RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
-_LOPSIDED = {
-    "shape": "wavy",
-    "curvatures": ["104.99 1/m", "209.97 1/m"],
-    "lead_in": "1 mm",
-    "run_out": "5 mm",
+LOPSIDED = {
+    "stimulus": {
+        "shape": "wavy",
+        "curvatures": ["104.99 1/m", "209.97 1/m"],
+        "lead_in": "1 mm",
+        "run_out": "5 mm",
+    }
 }
 
 EFFECT = PlannedEffect(
@@ -41,13 +42,9 @@ EFFECT = PlannedEffect(
     after=("ridges",),
     always="half the pad: whenever pad, stimulus and motion are mirror images",
     shown=(
-        Shown("lopsided wave", True, {"stimulus": _LOPSIDED, "motion": _RAMP}),
-        Shown(
-            "ramp and hold, 210 1/m",
-            False,
-            {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _RAMP},
-        ),
-        Shown("ramp and hold, flat", False, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
+        Shown("lopsided wave", True, LOPSIDED | RAMP),
+        Shown("ramp and hold, 210 1/m", False, CYLINDER | RAMP),
+        Shown("ramp and hold, flat", False, PLATE | RAMP),
     ),
     title="symmetry (half the pad)",
     marker="s",
