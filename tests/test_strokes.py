@@ -17,7 +17,6 @@ from fingerpad.measures.features import (
     energy,
 )
 from fingerpad.measures.kept import LazyMapping
-from fingerpad.measures.measure import Runs
 
 pytestmark = pytest.mark.unit
 
@@ -70,9 +69,7 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
 
 def test_what_is_loaded_already_is_not_made_again(made, slow):
     assert st.loaded(slow) is slow
-    runs = Runs(made)
-    assert runs.strokes["stroke_10"] is runs.strokes["stroke_10"]
-    assert runs.strokes["stroke_10"].identical(st.loaded(made["stroke_10"]))
+    assert st.loaded(made["stroke_10"]) is st.loaded(made["stroke_10"])
 
 
 def test_to_ask_whether_there_is_a_result_does_not_open_it():
