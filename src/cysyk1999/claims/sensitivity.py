@@ -167,9 +167,7 @@ def _nearest(label: str) -> str:
 
 
 NEAREST = {
-    scene: _nearest(label)
-    for runs in (NINE, FAST, RIDGED_NINE)
-    for label, scene in runs.scenes.items()
+    scene: _nearest(label) for runs in (NINE, FAST, RIDGED_NINE) for label, scene in runs.items()
 }
 NEAREST[PADS["homogeneous"]] = "flat"
 """Scene of one of the nine surfaces -> the surface of the variants that stands in for it."""

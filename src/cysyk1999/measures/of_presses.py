@@ -357,7 +357,7 @@ def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
     return found
 
 
-@measure("1", lambda scene: held(scene) and scene.name in FAST.scenes.values())
+@measure("1", lambda scene: held(scene) and scene.name in FAST.values())
 def energy_peak_offset(history):
     """Distance of the largest energy from the centre at top and end, the larger, over the spacing
     of the receptors.
@@ -375,7 +375,7 @@ def energy_peak_offset(history):
     return found
 
 
-_PLAIN = {ridged: NINE[label] for label, ridged in RIDGED_NINE.scenes.items()}
+_PLAIN = {ridged: NINE[label] for label, ridged in RIDGED_NINE.items()}
 
 
 @measure("1", lambda scene: scene.name in _PLAIN, beside=True)
@@ -425,7 +425,7 @@ def first_impulse(history):
 
 
 def _nine(runs: Histories) -> dict[str, xr.Dataset]:
-    return {label: runs[scene] for label, scene in NINE.scenes.items()}
+    return {label: runs[scene] for label, scene in NINE.items()}
 
 
 @kept
@@ -433,7 +433,7 @@ def _shallow_law(runs: Histories) -> tuple[ImpulseRate, float]:
     return shallow_law(_nine(runs))
 
 
-@measure("impulses/s", named(NINE.scenes.values()), beside=True)
+@measure("impulses/s", named(NINE.values()), beside=True)
 def rate_at_600_um(history, runs):
     """By Eq 5-1 scaled to the mean energy of the nine surfaces (see `shallow_law`)."""
     law, _ = _shallow_law(runs)

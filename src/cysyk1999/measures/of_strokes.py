@@ -290,7 +290,7 @@ def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]
 @kept
 def _law_at_560_um(runs: Histories) -> ImpulseRate:
     """By the rule of `shallow_law`."""
-    return shallow_law({label: runs[scene] for label, scene in NINE.scenes.items()}, SHALLOW)[0]
+    return shallow_law({label: runs[scene] for label, scene in NINE.items()}, SHALLOW)[0]
 
 
 def _rate_at_560_um(stroke: xr.Dataset, runs: Histories) -> np.ndarray:

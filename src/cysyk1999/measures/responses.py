@@ -162,7 +162,7 @@ def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[Spa
 
     Raises KeyError if one of them was not simulated.
     """
-    law = fit_sum([histories[scene] for scene in NINE.scenes.values()], depth)
+    law = fit_sum([histories[scene] for scene in NINE.values()], depth)
     return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
 
 
