@@ -301,7 +301,7 @@ def adaptation(histories: Histories) -> pd.DataFrame:
         )
         slow, fast = (
             predicted_rate(history),
-            rapidly_adapting_rate(history, RAPIDLY_ADAPTING, "curvature"),
+            rapidly_adapting_rate(history, RAPIDLY_ADAPTING),
         )
         for kind, rate in (("slowly adapting", slow), ("rapidly adapting", fast)):
             ticks = raster(rate, 5, SEED).rename(columns={TIME: IMPULSE, "trial": "trial (1)"})
