@@ -101,7 +101,7 @@ WRONG = {
     "figure_numbers[0]: -6 is not allowed here; allowed: a figure of the thesis in quotes": {
         "figure_numbers": [-6]
     },
-    "ridge_heights[1]: -1 is not allowed here; allowed: a number from 0": {
+    "ridge_heights[1]: -1 is outside the range; allowed: a number from 0": {
         "ridge_heights": [0, -1]
     },
 }

@@ -489,7 +489,7 @@ def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_whatever_the_cur
     largest = []
     for name in PRESSED[:3]:
         history = histories[name]
-        frame = responses.rapidly_adapting_rate(history, RAPIDLY_ADAPTING, "curvature")
+        frame = responses.rapidly_adapting_rate(history, RAPIDLY_ADAPTING)
         rate, top = frame[responses.IMPULSE_RATE], float(history["time"].values[ramp_end(history)])
         assert (rate[frame["time (s)"] > 0.6 * top] <= 1e-6).all()
         largest.append(rate.max())

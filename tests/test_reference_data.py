@@ -10,7 +10,6 @@ from cysyk1999.reference_data import (
     FORCE_DEPTH,
     ReferenceDataError,
     read_force_depth,
-    read_relaxation,
     read_surface_profiles,
 )
 
@@ -46,13 +45,6 @@ def test_committed_forces_have_the_published_means(indenter, depth, mean):
     data = read_force_depth(REFERENCE / "force_depth")
     chosen = data[(data["indenter"] == indenter) & (data["depth_mm"] == depth)]
     assert chosen["force_N"].mean() == pytest.approx(mean, abs=5e-4)
-
-
-def test_committed_relaxation_has_no_amplitudes_where_the_source_gives_none():
-    data = read_relaxation(REFERENCE / "relaxation.csv").set_index("series")
-    assert data.loc["thesis", "g"].tolist() == [0.055, 0.3691]
-    assert data.loc["pawluk_howe", "tau_s"].tolist() == [0.004, 0.07, 1.4]
-    assert np.isnan(data.loc["pawluk_howe", "g"]).all()
 
 
 def test_committed_profiles_fall_with_distance_from_the_cylinder():
@@ -160,15 +152,3 @@ def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path):
     (tmp_path / "empty").mkdir()
     with pytest.raises(ReferenceDataError, match="holds no CSV file"):
         read_force_depth(tmp_path / "empty")
-
-
-def test_relaxation_shares_must_sum_to_less_than_one(tmp_path):
-    path = tmp_path / "relaxation.csv"
-    path.write_text(
-        "series,indenter,term,g,tau_s,source,how_obtained\na,point probe,1,0.6,1,x,y\na,point "
-        "probe,2,0.5,2,x,y\n"
-    )
-    with pytest.raises(
-        ReferenceDataError, match=r"row 2, column g: series 'a' sums to 1.1; allowed: less than 1"
-    ):
-        read_relaxation(path)

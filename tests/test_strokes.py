@@ -9,7 +9,6 @@ from cysyk1999.figures.animation import animate, drawn
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import centre_node, centre_pressure
 from fingerpad.measures.kept import LazyMapping
-from fingerpad.measures.measure import Runs
 from test_stroke_trends import changed
 
 pytestmark = pytest.mark.unit
@@ -42,9 +41,7 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
 
 def test_what_is_loaded_already_is_not_made_again(made, slow):
     assert st.loaded(slow) is slow
-    runs = Runs(made)
-    assert runs.strokes["stroke_10"] is runs.strokes["stroke_10"]
-    assert runs.strokes["stroke_10"].identical(st.loaded(made["stroke_10"]))
+    assert st.loaded(made["stroke_10"]) is st.loaded(made["stroke_10"])
 
 
 def test_to_ask_whether_there_is_a_result_does_not_open_it():

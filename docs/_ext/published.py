@@ -2,8 +2,8 @@
 none is typed into a page.
 
 ``<!-- name -->text<!-- / -->`` in a page holds ``numbers()["name"]``, and reads as the text alone
-wherever Markdown is shown. What a name stands for is a line of docs/numbers.yaml; numbers of the
-pad, tables and sentences are functions below. ``python docs/_ext/published.py`` writes the present
+wherever Markdown is shown. What a name stands for is a line of docs/numbers.yaml; tables and
+sentences are functions below. ``python docs/_ext/published.py`` writes the present
 numbers into the pages; so does each build of the documentation.
 """
 
@@ -52,7 +52,22 @@ def outcomes() -> pd.DataFrame:
     return rows.assign(outcome=rows["outcome"].str.split(":").str[0])
 
 
-PREPARED = {"compared": compared, "outcomes": outcomes}
+@cache
+def pad() -> pd.DataFrame:
+    """One row: the sizes (m), moduli (Pa) and ridges of the pad that scenes have by default."""
+    scene = {
+        "specimen": {"ridges": "inner"},
+        "stimulus": {"shape": "flat"},
+        "motion": [{"press_to_force": "20 gf"}],
+    }
+    specimen = load_scene(scene).specimen
+    parts = {part: dict(getattr(specimen.layers, part)) for part in ("epidermis", "dermis", "fat")}
+    layers = {f"{part}_{key}": value for part, of in parts.items() for key, value in of.items()}
+    whole = {"contact_length": specimen.contact_length, "moduli": specimen.moduli}
+    return pd.DataFrame([dict(specimen.outline) | dict(specimen.ridges.inner) | layers | whole])
+
+
+PREPARED = {"pad": pad, "compared": compared, "outcomes": outcomes}
 """Tables that are made of the published ones."""
 
 
@@ -146,7 +161,11 @@ def duration(seconds: float) -> str:
     return f"{digits(seconds / (size or 1.0))} {unit}"
 
 
-SHOWN = {each.__name__: each for each in (digits, share, within, duration)}
+def mm(length: pd.Series) -> str:
+    return f"{1e3 * length.item():.3g} mm"
+
+
+SHOWN = {each.__name__: each for each in (digits, share, within, duration, mm)}
 """Functions by which docs/numbers.yaml shows numbers."""
 
 
@@ -248,68 +267,6 @@ def sweep_costs():
     return markdown_table(
         "scenes | batches | laying out | steady presses | dataset and table of 30 measures", rows
     )
-
-
-# --- the pad --------------------------------------------------------------------------------------
-
-
-@cache
-def pad():
-    """The specimen that scenes have by default, with its inner ridges."""
-    scene = {
-        "specimen": {"ridges": "inner"},
-        "stimulus": {"shape": "flat"},
-        "motion": [{"press_to_force": "20 gf"}],
-    }
-    return load_scene(scene).specimen
-
-
-def mm(length: float) -> str:
-    return f"{1e3 * length:.3g} mm"
-
-
-@number
-def pad_radius():
-    return mm(pad().outline.apex_radius)
-
-
-@number
-def pad_fat():
-    o = pad().outline
-    layers = o.epidermis_thickness + o.dermis_thickness
-    return mm(o.apex_height - layers - o.bone_centre_height - o.bone_half_height)
-
-
-@number
-def pad_length():
-    return mm(pad().contact_length)
-
-
-@number
-def ridge_sizes():
-    inner = pad().ridges.inner
-    return f"{mm(inner.pitch)} apart, {mm(inner.height)} high"
-
-
-@number
-def section_size():
-    o = pad().outline
-    return f"{mm(2 * o.half_width)} x {mm(o.apex_height + o.depth_below)}"
-
-
-@number
-def layer_thicknesses():
-    o = pad().outline
-    return f"epidermis {mm(o.epidermis_thickness)}, dermis {mm(o.dermis_thickness)}"
-
-
-@number
-def layer_moduli():
-    layers = [getattr(pad().layers, name) for name in ("epidermis", "dermis", "fat")]
-    state = pad().moduli.replace("long_term", "long-term")
-    ratios = digits([layer.poisson_ratio for layer in layers])
-    moduli = " / ".join(f"{layer.youngs_modulus / 1e6:g}" for layer in layers)
-    return f"E = {moduli} MPa ({state}), nu = {ratios}"
 
 
 if __name__ == "__main__":

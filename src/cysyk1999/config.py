@@ -6,16 +6,16 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, ValidationError
 
 from fingerpad.documents import Problem, Strict, explain
-from fingerpad.fields import filled, listed
+from fingerpad.fields import filled, listed, number
+from fingerpad.scenes.scene import LEVELS
 
-LEVELS = ("draft", "thesis", "fine")
 ELASTIC_CURVES = (
     "calibration_plate",
     "calibration_less_fat",
@@ -35,24 +35,6 @@ def _text(pattern: str, allowed: str) -> Any:
     return Annotated[str, BeforeValidator(check), Field(json_schema_extra={"pattern": pattern})]
 
 
-def _least(least: float, above: bool) -> Any:
-    """Field type: a number from `least`, or above it."""
-    allowed = f"a number {'above' if above else 'from'} {least:g}"
-
-    def check(value: Any) -> float:
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, (int, float))
-            or not (value > least or (value == least and not above))
-        ):
-            raise Problem("is not allowed here", allowed)
-        if not math.isfinite(value):
-            raise Problem("is not allowed here", allowed)
-        return float(value)
-
-    return Annotated[float, Field(**{"gt" if above else "ge": least}), BeforeValidator(check)]
-
-
 def _accuracy(value: Any) -> Any:
     if value in LEVELS or (isinstance(value, float) and 0 < value < 1):
         return value
@@ -61,8 +43,8 @@ def _accuracy(value: Any) -> Any:
     )
 
 
-def _list(item: Any, check: Callable = listed) -> Any:
-    return Annotated[tuple[item, ...], BeforeValidator(check)]
+def _list(item: Any) -> Any:
+    return Annotated[tuple[item, ...], BeforeValidator(listed)]
 
 
 Name = _text(r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$", "letters, digits, _, - and .")
@@ -71,7 +53,8 @@ Directory = _text(
     r"^[^/](.*[^/])?$", "a folder, relative to where the workflow runs, such as results/mine"
 )
 Folder = _text(r"\S", "a folder, relative to where the workflow runs or absolute")
-Coefficient, Height = _least(0, above=True), _least(0, above=False)
+Coefficient = number("a number above 0", 0, math.inf)
+Height = number("a number from 0", 0, math.inf, low_included=True)
 _ACCURACY = {
     "anyOf": [
         {"enum": list(LEVELS)},
@@ -88,7 +71,9 @@ class WorkflowConfig(Strict):
 
     name: Name
     """Name of the run."""
-    scenes: Annotated[_list(Name, filled), Field(json_schema_extra={"minItems": 1})]
+    scenes: Annotated[
+        tuple[Name, ...], BeforeValidator(filled), Field(json_schema_extra={"minItems": 1})
+    ]
     """Scenes to simulate: names of files in `scenes_folder` or, where it has none of that name, in
     config/scenes.
     """

@@ -5,15 +5,17 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
+from typing import ClassVar
 
 from cysyk1999.config import WorkflowConfig
 from cysyk1999.figures.grammar import Figure
 from cysyk1999.figures.registry import FIGURES
 from cysyk1999.job import Job, Part, parts
+from cysyk1999.publishing.write import draw_study, join_tables
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import ReferenceDataError, read_force_depth
 from fingerpad.documents import HIDE, Problem, SceneError, error_line, nearest
@@ -26,6 +28,8 @@ one.
 """
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")
 TABLES = ("thesis_comparison", "sensitivity")
+NO_FILE = "there is no such file"
+"""In the error of a scene that is not there."""
 HISTORIES = {"history", "histories", "cases", "sweep"}
 """Keys of inputs that are histories."""
 
@@ -50,8 +54,7 @@ class Project:
 
     def __init__(self, config: WorkflowConfig, file: str | Path, root: str | Path) -> None:
         self.config, self.file, self.root = config, file, Path(root)
-        self._paths: dict[str, str] = {}
-        self._scenes: dict[str, Written] = {}
+        self._written = cache(self._find)
         self._check()
 
     # -- what there is -----------------------------------------------------------------------------
@@ -67,35 +70,33 @@ class Project:
         c = self.config
         for key in ("scenes", "variants", "calibration_scenes", "friction_scenes", "field_scenes"):
             for i, name in enumerate(getattr(c, key)):
-                self._check_scene((key, i), name)
+                try:
+                    self._written(name)
+                except SceneError as error:
+                    if NO_FILE not in str(error):
+                        raise
+                    allowed = f"names of scenes in {' and '.join(self.scene_folders)}"
+                    self._wrong((key, i), f"{name!r} is not the name of a scene", allowed)
         for i, number in enumerate(c.figure_numbers or ()):
+            key = ("figure_numbers", i)
             if number not in self.specs:
-                self._wrong(
-                    ("figure_numbers", i), number, f"is not drawn{nearest(number, self.specs)}", ""
-                )
-            if lacking := [
-                scene for scene in self.specs[number].needs if scene not in c.every_scene
-            ]:
-                said = f"shows scenes that the configuration has not: {', '.join(lacking)}"
-                self._wrong(
-                    ("figure_numbers", i),
-                    number,
-                    said,
-                    "figures of its scenes, or leave figure_numbers out",
-                )
+                self._wrong(key, f"{number!r} is not drawn{nearest(number, self.specs)}")
+            if lacking := [s for s in self.specs[number].needs if s not in c.every_scene]:
+                shown = f"shows scenes that the configuration has not: {', '.join(lacking)}"
+                allowed = "figures of its scenes, or leave figure_numbers out"
+                self._wrong(key, f"{number!r} {shown}", allowed)
         known = (*TABLES, *RECEPTOR_TABLES, "mesh_quality", "summary")
         for i, name in enumerate(c.table_names):
             if name not in known:
-                self._wrong(("table_names", i), name, "is not a table", ", ".join(known))
+                self._wrong(("table_names", i), f"{name!r} is not a table", ", ".join(known))
         for key, needed in (("calibration_scenes", PLATE), ("friction_scenes", STROKE)):
-            if getattr(c, key) and needed not in getattr(c, key):
-                self._wrong((key,), getattr(c, key), f"lacks {needed}", "")
+            if (names := getattr(c, key)) and needed not in names:
+                self._wrong((key,), f"{names!r} lacks {needed}")
         if c.friction_coefficients and not c.friction_scenes:
-            self._wrong(
-                ("friction_coefficients",), HIDE, "lacks friction_scenes", "both or neither"
-            )
+            self._wrong(("friction_coefficients",), "lacks friction_scenes", "both or neither")
         if not self.forces and c.calibration_scenes:
-            self._wrong(("subjects",), c.subjects, "holds no CSV file", "a folder of at least one")
+            problem, allowed = "holds no CSV file", "a folder of at least one"
+            self._wrong(("subjects",), f"{c.subjects!r} {problem}", allowed)
         try:  # what somebody has measured is read before anything is simulated
             if c.calibration_scenes:
                 read_force_depth(self.forces)
@@ -103,27 +104,11 @@ class Project:
         except ReferenceDataError as error:
             raise SceneError(str(error)) from None
 
-    def _check_scene(self, key: tuple, name: str) -> None:
-        try:
-            read_scene(self.scene(name))
-        except SceneError as error:
-            if "there is no such file" in str(error):
-                folders = " and ".join(self.scene_folders)
-                self._wrong(
-                    key, name, "is not the name of a scene", f"names of scenes in {folders}"
-                )
-            raise
+    def _wrong(self, key: tuple, problem: str, allowed: str = "") -> None:
+        raise SceneError(error_line(self.file, key, Problem(problem, allowed, (), HIDE)))
 
-    def _wrong(self, key: tuple, value: object, problem: str, allowed: str) -> None:
-        shown = "" if value is HIDE else f"{value!r} "
-        raise SceneError(
-            error_line(self.file, key, Problem(f"{shown}{problem}", allowed, (), HIDE))
-        )
-
-    @cached_property
-    def specs(self) -> dict[str, Figure]:
-        """The thesis's figures that can be drawn, by number."""
-        return FIGURES
+    specs: ClassVar[Mapping[str, Figure]] = FIGURES
+    """The thesis's figures that can be drawn, by number."""
 
     @cached_property
     def scene_folders(self) -> list[str]:
@@ -149,20 +134,20 @@ class Project:
         """Path of a scene: in the first folder that has a file, or a family, which can be so
         called.
         """
-        if name not in self._paths:
-            self._paths[name] = self._find(name)
-        return self._paths[name]
+        return self._written(name)[0]
 
-    def _find(self, name: str) -> str:
-        for folder in self.scene_folders:
-            path = Path(folder, f"{name}.yaml")
+    def _find(self, name: str) -> tuple[str, Written]:
+        """Path of a scene, and what is written of it."""
+        *first, last = self.scene_folders
+        for folder in first:
+            path = f"{folder}/{name}.yaml"
             try:
-                read_scene(path)
+                return path, read_scene(path)
             except SceneError as error:
-                if "there is no such file" in str(error) and folder != self.scene_folders[-1]:
-                    continue
-            return str(path)
-        raise AssertionError("a folder at least")
+                if NO_FILE not in str(error):
+                    raise
+        path = f"{last}/{name}.yaml"
+        return path, read_scene(path)
 
     def thesis_specimen(self) -> str:
         return self.at("config/specimens/thesis.yaml")
@@ -184,12 +169,8 @@ class Project:
 
     def both_companions(self, scenes: Iterable[str]) -> list[str]:
         """The same, and those of the companions on coarser meshes with the scenes' own steps."""
-        names = list(scenes)
-        return (
-            [path for fidelity in COMPANIONS for path in self.histories(names, fidelity)]
-            if self.companions(names)
-            else []
-        )
+        names = list(scenes) if self.config.companions else []
+        return [path for fidelity in COMPANIONS for path in self.histories(names, fidelity)]
 
     def meshes(self, scenes: Iterable[str]) -> list[str]:
         """Meshes the scenes are simulated on."""
@@ -220,20 +201,15 @@ class Project:
         """Scenes that have a companion: those of the configuration, and the variants that a figure
         or a calibration compares.
         """
-        c = self.config
-        compared = {
-            *c.scenes,
-            *(scene for figure in self.drawn for scene in figure.read_companions),
-        }
-        return compared | {scene for scene in c.every_scene if scene in (PLATE, RAMP, STROKE)}
+        c, compared = self.config, {scene for f in self.drawn for scene in f.read_companions}
+        return compared.union(c.scenes, {PLATE, RAMP, STROKE}.intersection(c.every_scene))
 
     def batches(self) -> dict[str, list[str]]:
         """Scenes that share a process: a family's, but each stroke has one of its own."""
         batches: dict[str, list[str]] = {}
         for name in self.config.every_scene:
-            batches.setdefault(
-                name if moves_along(self.scene(name)) else self.family(name), []
-            ).append(name)
+            batch = name if moves_along(self.scene(name)) else self.family(name)
+            batches.setdefault(batch, []).append(name)
         return batches
 
     def reads(self, *names: str) -> dict[str, list[str]]:
@@ -244,20 +220,17 @@ class Project:
         (`written`), so that an edit reruns the scenes whose meaning it changes, not all that share
         the file.
         """
-        files = dict.fromkeys(
-            os.path.relpath(path) for name in names for path in rests_on(self.scene(name))
-        )
-        own = {os.path.relpath(path) for name in names for path in self._scene(name).files}
+        rested = {os.path.relpath(path): None for n in names for path in rests_on(self.scene(n))}
+        own = {os.path.relpath(path) for n in names for path in self._written(n)[1].files}
         return {
-            "scene_files": [path for path in files if path in own],
-            "files": [path for path in files if path not in own],
+            "scene_files": [path for path in rested if path in own],
+            "files": [path for path in rested if path not in own],
         }
 
     def written(self, *names: str) -> list[str]:
         """Digests of what is written of scenes."""
-        texts = (
-            json.dumps(self._scene(name).document, sort_keys=True, default=str) for name in names
-        )
+        written = (self._written(name)[1].document for name in names)
+        texts = (json.dumps(document, sort_keys=True, default=str) for document in written)
         return [hashlib.sha256(text.encode()).hexdigest()[:16] for text in texts]
 
     def values_of(self, *names: str) -> dict[str, list[str]]:
@@ -267,13 +240,7 @@ class Project:
 
     def family(self, name: str) -> str:
         """Name of the file that a scene is in."""
-        return self._scene(name).files[0].stem
-
-    def _scene(self, name: str) -> Written:
-        """What is written of a scene, read once."""
-        if name not in self._scenes:
-            self._scenes[name] = read_scene(self.scene(name))
-        return self._scenes[name]
+        return self._written(name)[1].files[0].stem
 
     def picture_of(self, number: str) -> str:
         return f"{self.config.figures}/fig_{number}.png"
@@ -332,15 +299,10 @@ class Project:
 
     def joined(self, name: str, table: str, rows: list[str]) -> Job:
         """The job that puts parts of a table together."""
-        from cysyk1999.publishing.write import join_tables
-
         return Job(join_tables, {"parts": rows}, {"table": self.tables([table])}, name=name)
 
     def study_pictures(self, study: str, names: list[str], data: list[str], module: str) -> Job:
         """The job that draws the pictures of a study from its data."""
-        from cysyk1999.publishing.write import draw_study
-
-        made = {"pictures": self.pictures(names, f"{study}_")}
-        values = {"study": [module]}
+        made, values = {"pictures": self.pictures(names, f"{study}_")}, {"study": [module]}
         name = f"{study}_pictures"
         return Job(draw_study, {"data": data}, made, values, name, (module,), priority=1)

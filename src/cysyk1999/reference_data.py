@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -31,93 +32,81 @@ class ReferenceDataError(ValueError):
 
 @dataclass(frozen=True)
 class Column:
-    """What a column may hold: text, one of some words, or a number above (or from) a bound;
-    `optional` allows none.
+    """What the cells of a column may hold.
+
+    Attributes
+    ----------
+    allowed
+        What is allowed, in words.
+    accepts
+        Whether it may hold a value, a text or a finite number.
+    kind
+        `str` or `float`.
+    optional
+        Whether a cell may be empty: then its value is an empty text, or NaN.
     """
 
-    words: tuple[str, ...] = ()
-    text: bool = False
-    above: float | None = None
-    least: float | None = None
+    allowed: str
+    accepts: Callable[[Any], bool]
+    kind: type = float
     optional: bool = False
 
     @property
-    def allowed(self) -> str:
-        """What is allowed, in words."""
-        if self.words:
-            return ", ".join(self.words)
-        if self.text:
-            return "text or nothing" if self.optional else "text"
-        bound = (
-            f" above {self.above:g}"
-            if self.above is not None
-            else f" from {self.least:g}"
-            if self.least is not None
-            else ""
-        )
-        return f"a number{bound}{' or nothing' if self.optional else ''}"
+    def or_nothing(self) -> Column:
+        """The same, whose cells may be empty."""
+        return replace(self, allowed=f"{self.allowed} or nothing", optional=True)
 
     def read(self, cell: str | float) -> str | float:
-        """The value of a cell, text or a number; ValueError if it is not allowed."""
-        if self.words or self.text:
-            if self.optional and not cell:
-                return ""
-            if not cell or (self.words and cell not in self.words):
-                raise ValueError
-            return cell
+        """The value of a cell; ValueError if it is not allowed."""
         if self.optional and not cell:
-            return math.nan
-        value = float(cell)
-        if not math.isfinite(value) or (self.above is not None and not value > self.above):
-            raise ValueError
-        if self.least is not None and not value >= self.least:
+            return "" if self.kind is str else math.nan
+        value = self.kind(cell)
+        if not self.accepts(value):
             raise ValueError
         return value
 
 
-_ORIGIN = {"source": Column(text=True), "how_obtained": Column(text=True)}
+def one_of(*words: str) -> Column:
+    """A column of some words."""
+    return Column(", ".join(words), words.__contains__, str)
+
+
+TEXT = Column("text", bool, str)
+NUMBER = Column("a number", math.isfinite)
+POSITIVE = Column("a number above 0", lambda number: number > 0)
+NOT_NEGATIVE = Column("a number from 0", lambda number: number >= 0)
+
+_ORIGIN = {"source": TEXT, "how_obtained": TEXT}
 
 FORCE_DEPTH = {
-    "subject": Column(text=True),
-    "indenter": Column(words=INDENTERS),
-    "depth_mm": Column(above=0.0),
-    "speed_mm_per_s": Column(least=0.0),
-    "force_N": Column(above=0.0),
+    "subject": TEXT,
+    "indenter": one_of(*INDENTERS),
+    "depth_mm": POSITIVE,
+    "speed_mm_per_s": NOT_NEGATIVE,
+    "force_N": POSITIVE,
     **_ORIGIN,
 }
 """Normal force at an indentation depth; a speed of 0 is the steady state."""
 
-RELAXATION = {
-    "series": Column(text=True),
-    "indenter": Column(words=INDENTERS),
-    "term": Column(least=1.0),
-    "g": Column(above=0.0, optional=True),
-    "tau_s": Column(above=0.0),
-    **_ORIGIN,
-}
-"""Terms of relaxation functions; g is the share of the instantaneous shear modulus, empty where the
-source gives none.
-"""
-
 SURFACE_PROFILES = {
-    "subject": Column(text=True),
-    "indenter": Column(words=INDENTERS),
-    "diameter_mm": Column(above=0.0),
-    "depth_mm": Column(above=0.0),
-    "speed_mm_per_s": Column(least=0.0),
-    "lateral_distance_mm": Column(),
-    "deflection_mm": Column(),
+    "subject": TEXT,
+    "indenter": one_of(*INDENTERS),
+    "diameter_mm": POSITIVE,
+    "depth_mm": POSITIVE,
+    "speed_mm_per_s": NOT_NEGATIVE,
+    "lateral_distance_mm": NUMBER,
+    "deflection_mm": NUMBER,
     **_ORIGIN,
 }
 """Deflection of the skin, downward positive, beside an indenter at a depth."""
 
 FRICTION = {
-    "kind": Column(words=("measured", "assumed")),
-    "quantity": Column(words=("coefficient", "factor")),
-    "contact": Column(text=True),
-    "condition": Column(text=True),
-    "low": Column(above=0.0),
-    "high": Column(above=0.0, optional=True),
+    "kind": one_of("measured", "assumed"),
+    "quantity": one_of("coefficient", "factor"),
+    "contact": TEXT,
+    "condition": TEXT,
+    "low": POSITIVE,
+    "high": POSITIVE.or_nothing,
     **_ORIGIN,
 }
 """Friction coefficients of fingers, single (`high` empty) or ranges, and factors by which a
@@ -146,10 +135,12 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         A file is wrong, there is none, or it gives a subject's depth under an indenter at a speed
         twice.
     """
-    if isinstance(paths, (str, Path)) and Path(paths).is_dir():
-        files = sorted(Path(paths).glob("*.csv"))
-    else:
-        files = sorted(map(Path, [paths] if isinstance(paths, (str, Path)) else paths))
+    listed = [paths] if isinstance(paths, (str, Path)) else paths
+    files = [
+        file
+        for path in sorted(map(Path, listed))
+        for file in (sorted(path.glob("*.csv")) if path.is_dir() else [path])
+    ]
     if not files:
         raise ReferenceDataError(
             f"{paths}: holds no CSV file; allowed: at least one with columns "
@@ -157,38 +148,19 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         )
     frames = [read_table(file, FORCE_DEPTH) for file in files]
     for file, frame in zip(files, frames, strict=True):
-        seen: dict[tuple, int] = {}
-        for record in frame.itertuples():
-            key = (record.subject, record.indenter, record.depth_mm, record.speed_mm_per_s)
-            if key in seen:
-                what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
-                raise ReferenceDataError(
-                    f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: "
-                    "each once"
-                )
-            seen[key] = record.Index
+        measured = frame[["subject", "indenter", "depth_mm", "speed_mm_per_s"]]
+        for row in frame.index[measured.duplicated()]:
+            key = measured.loc[row]
+            first = frame.index[measured.eq(key).all(axis=1)][0]
+            what = "subject '{}', {}, {:g} mm, {:g} mm/s".format(*key)
+            raise ReferenceDataError(
+                f"{file}: row {row}: {what} is in row {first} already; allowed: each once"
+            )
     files_of = Counter(subject for frame in frames for subject in frame["subject"].unique())
     for file, frame in zip(files, frames, strict=True):
-        named = {
-            subject: f"{subject} ({file.stem})" for subject, count in files_of.items() if count > 1
-        }
-        frame["subject"] = frame["subject"].replace(named)
+        several = frame["subject"].map(files_of) > 1
+        frame.loc[several, "subject"] += f" ({file.stem})"
     return pd.concat(frames, ignore_index=True)
-
-
-def read_relaxation(path: str | Path) -> pd.DataFrame:
-    """Relaxation series, columns of :data:`RELAXATION`; `ReferenceDataError` if the file is wrong
-    or shares sum to 1 or more.
-    """
-    frame = read_table(path, RELAXATION)
-    totals = frame.groupby("series", sort=False)["g"].sum()
-    for series, total in totals[totals >= 1].items():
-        row = frame.index[frame["series"] == series][0]
-        raise ReferenceDataError(
-            f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less "
-            "than 1"
-        )
-    return frame
 
 
 def read_surface_profiles(path: str | Path) -> pd.DataFrame:
@@ -199,13 +171,13 @@ def read_surface_profiles(path: str | Path) -> pd.DataFrame:
 
 
 BANDS = {
-    "surface": Column(text=True),
-    "measure": Column(text=True),
-    "unit": Column(words=("mm", "Pa")),
-    "low": Column(above=0.0),
-    "high": Column(above=0.0),
-    "pads": Column(above=0.0),
-    "source": Column(text=True),
+    "surface": TEXT,
+    "measure": TEXT,
+    "unit": one_of("mm", "Pa"),
+    "low": POSITIVE,
+    "high": POSITIVE,
+    "pads": POSITIVE,
+    "source": TEXT,
 }
 """What the thesis leaves open of its pad: lowest and highest of a measure among pads that show what
 it shows.
@@ -217,24 +189,24 @@ def read_bands(path: str | Path) -> pd.DataFrame:
 
     Raises ReferenceDataError: the file is wrong, or a band is upside down.
     """
-    frame = read_table(path, BANDS)
-    for row in frame.index[frame["high"] < frame["low"]]:
-        low, high = frame.loc[row, ["low", "high"]]
-        raise ReferenceDataError(
-            f"{path}: row {row}, column high: '{high:g}'; allowed: from {low:g}"
-        )
-    return frame
+    return _upright(path, BANDS)
 
 
 def read_friction(path: str | Path) -> pd.DataFrame:
     """Published friction, columns of :data:`FRICTION`; `ReferenceDataError` if the file is wrong or
     a range is upside down.
     """
-    frame = read_table(path, FRICTION)
+    return _upright(path, FRICTION)
+
+
+def _upright(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
+    """A table none of whose ranges, columns low and high, is upside down."""
+    frame = read_table(path, schema)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
         raise ReferenceDataError(
-            f"{path}: row {row}, column high: '{high:g}'; allowed: a number from {low:g} or nothing"
+            f"{path}: row {row}, column high: '{high:g}'; allowed: a number from {low:g}"
+            + " or nothing" * schema["high"].optional
         )
     return frame
 
@@ -272,20 +244,20 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
     for name in table.header:
         if name not in schema:
             raise ReferenceDataError(f"{path}: column '{name}' is not known; allowed: {columns}")
-    values: dict[str, list] = {name: [] for name in table.header}
+    if not table.rows:
+        raise ReferenceDataError(f"{path}: has no rows; allowed: at least one")
+    values: dict[str, list] = {name: [] for name in schema}
     for line, row in zip(table.lines, table.rows, strict=True):
         for k, (name, cell) in enumerate(zip(table.header, row, strict=True)):
             column = schema[name]
             try:
-                number = cell and not (column.words or column.text)
+                number = cell and column.kind is float
                 values[name].append(column.read(table.number(cell, line, k) if number else cell))
             except ValueError:
                 raise ReferenceDataError(
                     f"{path}: row {line}, column {name}: '{cell[:60]}'; allowed: {column.allowed}"
                 ) from None
-    if not table.rows:
-        raise ReferenceDataError(f"{path}: has no rows; allowed: at least one")
-    return pd.DataFrame(values, index=table.lines)[list(schema)]
+    return pd.DataFrame(values, index=table.lines)
 
 
 def read_reference(path: str | PathLike) -> pd.DataFrame:

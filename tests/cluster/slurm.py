@@ -16,6 +16,8 @@ import subprocess
 import time
 from pathlib import Path
 
+import psutil
+
 CONFIGURATION = Path("/etc/slurm/slurm.conf")
 DAEMONS = ("munged", "slurmctld", "slurmd")
 
@@ -142,46 +144,17 @@ class Cluster:
     def kill_node(self) -> None:
         """Kill the node as a power cut would: slurmd, and whatever runs under it."""
         if daemon := self._daemons.pop("slurmd", None):
-            for process in [*_below(daemon.pid), daemon.pid, *self._steps()]:
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(process, signal.SIGKILL)
+            steps = [step for step in psutil.process_iter() if _is_step(step)]
+            for process in (psutil.Process(daemon.pid), *steps):
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    for each in [*process.children(recursive=True), process]:
+                        each.kill()
             daemon.wait()
 
-    def _steps(self) -> list[int]:
-        """Processes of this cluster's jobs: slurmstepd and all under it."""
-        steps = [int(p) for p in _pids() if _command(p).startswith("slurmstepd: [")]
-        return [process for step in steps for process in [*_below(step), step]]
 
-
-def _pids() -> list[str]:
-    return [entry for entry in os.listdir("/proc") if entry.isdigit()]
-
-
-def _command(process: str) -> str:
+def _is_step(process: psutil.Process) -> bool:
+    """Whether a process holds a step of a job of this cluster's."""
     try:
-        return (
-            Path(f"/proc/{process}/cmdline")
-            .read_bytes()
-            .replace(b"\0", b" ")
-            .decode(errors="replace")
-            .strip()
-        )
-    except OSError:
-        return ""
-
-
-def _below(process: int) -> list[int]:
-    """Descendants of a process."""
-    parents = {}
-    for pid in _pids():
-        with contextlib.suppress(OSError, IndexError):
-            parents[int(pid)] = int(
-                Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1]
-            )
-    found, todo = [], [process]
-    while todo:
-        parent = todo.pop()
-        children = [pid for pid, above in parents.items() if above == parent]
-        found += children
-        todo += children
-    return found
+        return " ".join(process.cmdline()).startswith("slurmstepd: [")
+    except psutil.Error:
+        return False

@@ -5,6 +5,7 @@ Which jobs an edit reruns in the full configuration is asked of the package in t
 Snakemake here.
 """
 
+import contextlib
 import json
 import os
 import random
@@ -15,7 +16,6 @@ import subprocess
 import sys
 import time
 import zipfile
-from contextlib import ExitStack
 
 import numpy as np
 import pandas as pd
@@ -30,6 +30,14 @@ pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
 SMOKE = ("--configfile", "config/smoke.yaml")
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
+
+
+def jobs_of(tree, name):
+    """All jobs of a configuration in a tree."""
+    document = yaml.safe_load((tree.root / "config" / f"{name}.yaml").read_text())
+    return Project(read_config(document, f"{name}.yaml"), f"{name}.yaml", tree.root).jobs()
+
+
 COMPANIONS = {
     f"results/smoke/{kind}/homogeneous_flat/history.nc" for kind in ("coarse_mesh", "coarse")
 }
@@ -96,40 +104,23 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     """What is not declared cannot trigger a rerun: the rules' inputs against what processes really
     opened.
     """
-    config = read_config(
-        yaml.safe_load((finished.root / "config" / "smoke.yaml").read_text()), "smoke.yaml"
-    )
-    before = os.getcwd()
-    os.chdir(finished.root)
-    try:
-        jobs = Project(config, "smoke.yaml", finished.root).jobs()
-        declared = {f"results/smoke/logs/{job.name}.log": job for job in jobs}
-        inputs = {
-            log: {
-                os.path.relpath(p)
-                for p in (*job.sources, *(p for paths in job.inputs.values() for p in paths))
-            }
-            for log, job in declared.items()
-        }
-    finally:
-        os.chdir(before)
-    here = os.path.relpath(
-        os.path.join(os.path.dirname(__file__), "..", "..", "src"), finished.root
-    )
-    results = {
-        path for job in jobs for paths in (*job.outputs.values(), job.beside) for path in paths
-    }
+    with contextlib.chdir(finished.root):
+        jobs = jobs_of(finished, "smoke")
+        inputs = {job.name: {os.path.relpath(p) for p in (*job.sources, *job.read)} for job in jobs}
+    declared = {f"results/smoke/logs/{job.name}.log": job for job in jobs}
+    src = os.path.join(os.path.dirname(__file__), "..", "..", "src")
+    here = os.path.relpath(src, finished.root)
+    results = {path for job in jobs for path in job.made}
     traced = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
     runs = set()
     for process in (t for t in traced if t["argv"][:2] == ["-m", "cysyk1999.workflow"]):
         log = process["argv"][process["argv"].index("--log") + 1]
         job = declared[log]
-        allowed = {path.replace(here, "src") for path in inputs[log]}
-        own = {path for paths in (*job.outputs.values(), job.beside) for path in paths}
+        allowed = {path.replace(here, "src") for path in inputs[job.name]} | {*job.made}
         read = {
             path for path in process["files"] if path in results or not path.startswith("results/")
         }
-        undeclared = {path for path in read - allowed - own if "__pycache__" not in path}
+        undeclared = {path for path in read - allowed if "__pycache__" not in path}
         assert not undeclared, f"{job.name} opens what it does not declare"
         runs.add(job.kind)
     assert runs >= {
@@ -231,11 +222,8 @@ def products(root):
     """What the coarse workflow makes under final names, but logs and what tells of costs and
     times.
     """
-    found = {
-        path.relative_to(root).as_posix(): path
-        for path in (root / "results" / "smoke").rglob("*")
-        if path.is_file()
-    }
+    paths = (path for path in (root / "results/smoke").rglob("*") if path.is_file())
+    found = {path.relative_to(root).as_posix(): path for path in paths}
     return {
         name: path
         for name, path in found.items()
@@ -429,38 +417,29 @@ def test_the_archive_is_a_crate_in_which_everything_leads_somewhere(finished):
     graph = json.loads((crate / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
     known = {entity["@id"]: entity for entity in graph}
     assert len(known) == len(graph)
-    named = {
-        each["@id"] for entity in graph for value in entity.values() for each in _references(value)
-    }
+    named = {name for entity in graph for value in entity.values() for name in _references(value)}
     assert {name for name in named if "://" not in name} <= set(known)
     for name, entity in known.items():
         if {"File", "Dataset"} & set(np.atleast_1d(entity["@type"])) and name != "./":
             assert (crate / name).exists(), name
-    parts = {each["@id"] for each in known["./"]["hasPart"]}
-    assert {
-        "Snakefile",
-        "config/smoke.yaml",
-        "results/smoke/figures/fig_4-12.png",
-        "costs.csv",
-    } < parts
+    parts = {*_references(known["./"]["hasPart"])}
+    assert {"Snakefile", "config/smoke.yaml", "costs.csv"} < parts
+    assert "results/smoke/figures/fig_4-12.png" in parts
     run = known["#run"]
     assert run["instrument"] == {"@id": "Snakefile"} and run["startTime"] < run["endTime"]
     drawn = known["#job-figures_4_12"]
     assert {"@id": "results/smoke/simulations/homogeneous_flat/"} in drawn["object"]
     assert {"@id": "results/smoke/figures/fig_4-12.csv"} in drawn["result"]
     costs = pd.read_csv(crate / "costs.csv")
-    assert {f"#job-{job}" for job in costs["job"]} == {
-        each["@id"] for each in known["./"]["mentions"]
-    } - {"#run"}
+    actions = {*_references(known["./"]["mentions"])}
+    assert {f"#job-{job}" for job in costs["job"]} == actions - {"#run"}
     assert costs.set_index("scene").loc["simulations/homogeneous_flat", "process time (s)"] > 0
 
 
 def _references(value):
-    if isinstance(value, dict) and set(value) == {"@id"}:
-        yield value
-    elif isinstance(value, list):
-        for each in value:
-            yield from _references(each)
+    for each in value if isinstance(value, list) else [value]:
+        if isinstance(each, dict) and set(each) == {"@id"}:
+            yield each["@id"]
 
 
 def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
@@ -478,11 +457,8 @@ def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
 
 def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clone):
     """Files of no content stand for all the results; what edits rerun is planned, not run."""
-    config = read_config(
-        yaml.safe_load((clone.root / "config" / "thesis.yaml").read_text()), "thesis.yaml"
-    )
-    for job in Project(config, "thesis.yaml", clone.root).jobs():
-        for path in (path for paths in (*job.outputs.values(), job.beside) for path in paths):
+    for job in jobs_of(clone, "thesis"):
+        for path in job.made:
             file = clone.root / path
             if file.name == "specimens":
                 file.mkdir(parents=True, exist_ok=True)
@@ -498,7 +474,7 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
         ),
         (("figures/grammar.py",), {"figures_3", "figures_4", "figures_5"}),
     ):
-        with ExitStack() as edits:
+        with contextlib.ExitStack() as edits:
             for path in paths:
                 edits.enter_context(clone.edited(f"src/cysyk1999/{path}"))
             jobs = clone.planned()

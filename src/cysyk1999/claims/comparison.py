@@ -26,19 +26,17 @@ from os import PathLike
 import pandas as pd
 
 from cysyk1999.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
-from cysyk1999.claims.reasons import REASONS, reason, when_the_hold_starts
-from cysyk1999.claims.rows import Number
+from cysyk1999.claims.reasons import REASONS, reason
+from cysyk1999.claims.rows import GIVEN, Number, judged
 from cysyk1999.claims.sensitivity import evidence
 from cysyk1999.claims.trends import TRENDS
-from cysyk1999.claims.verdicts import is_inside, judge, significant
-from cysyk1999.measures.errors import Errors
-from cysyk1999.measures.table import MEASURES, Instead, Measures
+from cysyk1999.claims.verdicts import is_inside, joined, significant
+from cysyk1999.measures.runs import NINE
+from cysyk1999.measures.table import Instead, Measures
 from cysyk1999.reference_data import read_reference
 
 AGREES = ("inside", "plausible", "trend_holds")
 """Verdicts of what is as the thesis says."""
-GIVEN = ("input", "count")
-"""Roles of what goes into the simulations: printed in full, without an error."""
 PARTS = ("mesh_error", "time_step_error", "sampling_error")
 """Columns of what a number is wrong by, each in the row's units."""
 
@@ -108,19 +106,16 @@ def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
 
     Columns kind, score, agree, judged. Rows that are not comparable are not judged.
     """
-    kind = (
-        table["id"]
-        .map(reference["form"])
-        .map(lambda form: {"axis": "axis", "trend": "trend"}.get(form, "value or range"))
-    )
-    found = table["id"].map(reference.apply(score_of, axis=1))
-    judged = table["verdict"].ne("not_comparable") & found.ne("")
+    form = table["id"].map(reference["form"])
+    kind = form.where(form.isin(("axis", "trend")), "value or range")
+    score = table["id"].map(reference.apply(score_of, axis=1))
+    judged = table["verdict"].ne("not_comparable") & score.ne("")
     agree = table["verdict"].isin(AGREES)
     rows = []
     for each in ("value or range", "axis", "trend"):
-        for score in (*SCORES, "all"):
-            chosen = judged & kind.eq(each) & (found.eq(score) | (score == "all"))
-            rows.append((each, score, int((chosen & agree).sum()), int(chosen.sum())))
+        for name in (*SCORES, "all"):
+            chosen = judged & kind.eq(each) & (score.eq(name) | (name == "all"))
+            rows.append((each, name, int((chosen & agree).sum()), int(chosen.sum())))
     return pd.DataFrame(rows, columns=["kind", "score", "agree", "judged"])
 
 
@@ -138,13 +133,11 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
     what was put in.
     """
     counted = scores(table, reference).set_index(["kind", "score"])
+    counts = counted["agree"].astype(str) + " of " + counted["judged"].astype(str)
 
     def told(kind: str) -> str:
-        found = {
-            score: "{} of {}".format(*counted.loc[(kind, score), ["agree", "judged"]])
-            for score in ("held out", "fitted", "all")
-        }
-        return f"{found['held out']} (fitted {found['fitted']}, all {found['all']})"
+        of = counts[kind]
+        return f"{of['held out']} (fitted {of['fitted']}, all {of['all']})"
 
     given = table[table["role"].isin(GIVEN) & table["verdict"].ne("not_comparable")]["verdict"]
     return (
@@ -170,61 +163,33 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
     try:
         if entry["form"] == "trend":
             trend = TRENDS[entry.name](fine)
-            verdict = "trend_holds" if trend.holds else "trend_fails"
-            note = _note(REASONS.get(entry["reason"], ""), trend.note)
-            return row | {
-                "simulated": significant(trend.shown, 4),
-                "verdict": verdict,
-                "note": note,
-            }
-        number = Number.of(entry)
-        value = number(fine)
+            row["simulated"] = significant(trend.shown, 4)
+            row["verdict"] = "trend_holds" if trend.holds else "trend_fails"
+            return row | {"note": joined(REASONS.get(entry["reason"], ""), trend.note)}
+        number, value, errors, verdict, *notes = judged(entry, fine, instead)
     except KeyError as missing:
         why = REASONS["subjects"] if entry["reason"] == "subjects" else missing.args[0]
         return row | {"verdict": "not_comparable", "note": f"not simulated: {why}"}
-    if entry["role"] in GIVEN:
-        verdict, *notes = judge(value, 0.0, entry)
-        notes += [reason(entry["reason"], fine, number)] * (
-            verdict == "outside" or entry["form"] == "unlike"
-        )
-        return row | {"simulated": value, "verdict": verdict, "note": _note(*notes, _doubt(entry))}
-    # what a scene alone tells is no result
-    errors = (
-        Errors(0.0, 0.0, 0.0)
-        if MEASURES[number.measure].of == "scene"
-        else instead.errors(number, value)
-    )
-    allowed = errors.total
-    verdict, *notes = judge(value, allowed, entry)
-    if (
-        verdict == "outside"
-        or entry["form"] in ("estimate", "unlike")
-        or entry["reason"] == "panels"
-    ):
+    outside = verdict == "outside"
+    if outside or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
         notes.append(reason(entry["reason"], fine, number))
-    if verdict == "outside":
-        notes.append(evidence(entry.name, number, value, allowed, fine, reference))
-    row |= {"simulated": significant(value, 4)} | {
-        p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)
-    }
-    return row | {
-        "verdict": verdict,
-        "note": _note(*notes, _at_start(number, entry, fine), _doubt(entry)),
-    }
+    if entry["role"] not in GIVEN:
+        if outside:
+            notes.append(evidence(entry.name, number, value, errors.total, fine, reference))
+        value = significant(value, 4)
+        row |= {p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)}
+    notes.append(_at_start(number, entry, fine))
+    notes.append("thesis reading uncertain" * (entry["kind"] == "garbled"))
+    return row | {"simulated": value, "verdict": verdict, "note": joined(*notes)}
 
 
 def _at_start(number: Number, entry: Mapping, fine: Measures) -> str:
-    start = when_the_hold_starts(fine, number)
-    if start is None:
+    """The inverse contact width that the hold starts with, of the rows that give the one it ends
+    with.
+    """
+    scene = number.scenes[0]
+    if number.measure != "inverse_width" or scene not in NINE.values():
         return ""
-    return f"{start:.3g} when the hold starts" + (
-        "" if is_inside(start, 0.0, entry) else ", outside"
-    )
-
-
-def _doubt(entry: Mapping) -> str:
-    return "thesis reading uncertain" if entry["kind"] == "garbled" else ""
-
-
-def _note(*parts: str) -> str:
-    return "; ".join(filter(None, parts))
+    start = fine(number.measure, scene, "top")
+    outside = "" if is_inside(start, 0.0, entry) else ", outside"
+    return f"{start:.3g} when the hold starts{outside}"

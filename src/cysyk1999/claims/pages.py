@@ -76,22 +76,18 @@ def _page(key: str, rows: pd.DataFrame, axis: pd.Series) -> str:
 
 
 def _line(row: pd.Series, on_axis: bool) -> dict[str, str]:
-    conditions = f", {row['condition']}" if _there(row["condition"]) else ""
+    conditions = f", {row['condition']}" if pd.notna(row["condition"]) else ""
     return {
         "quantity": f"{row['figure']}: {row['quantity']}{conditions} ({row['id']})",
         "thesis": _thesis(row, on_axis),
         "here": _here(row),
         "verdict": VERDICTS.get(row["verdict"], row["verdict"]),
-        "why": row["note"] if _there(row["note"]) else "",
+        "why": row["note"] if pd.notna(row["note"]) else "",
     }
 
 
-def _there(value: object) -> bool:
-    return value is not None and value == value and value != ""
-
-
 def _thesis(row: pd.Series, on_axis: bool) -> str:
-    ends = [_number(row[key]) for key in ("thesis_low", "thesis_high") if _there(row[key])]
+    ends = [_number(row[key]) for key in ("thesis_low", "thesis_high") if pd.notna(row[key])]
     if not ends:
         return "as it says"
     said = _with_unit(" to ".join(dict.fromkeys(ends)), row["units"])
@@ -100,12 +96,12 @@ def _thesis(row: pd.Series, on_axis: bool) -> str:
 
 
 def _here(row: pd.Series) -> str:
-    if not _there(row["simulated"]):
+    if not pd.notna(row["simulated"]):
         return ""
     said = [
         f"{word} {_number(significant(error, 2))}"
         for part, word in zip(PARTS, ("mesh", "steps", "sampling"), strict=True)
-        if _there(error := row[part])
+        if pd.notna(error := row[part])
         and error > 0
         and error >= 5e-5 * abs(row["simulated"])  # in one of four digits
     ]

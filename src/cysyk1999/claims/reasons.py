@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from cysyk1999.claims.rows import Number
-from cysyk1999.measures.runs import NINE
 from cysyk1999.measures.table import Measures
 
 _PAD = (
@@ -91,11 +90,3 @@ def reason(word: str, measures: Measures, number: Number) -> str:
     """What a reason says of a number; empty without one."""
     found = REASONS.get(word, "")
     return found(measures, number) if callable(found) else found
-
-
-def when_the_hold_starts(measures: Measures, number: Number) -> float | None:
-    """The inverse contact width that the hold starts with, of the rows that give the one it ends
-    with.
-    """
-    ends = number.measure == "inverse_width" and number.scenes[0] in NINE.scenes.values()
-    return measures(number.measure, number.scenes[0], "top") if ends else None

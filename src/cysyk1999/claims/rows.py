@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from cysyk1999.claims.verdicts import judge
+from cysyk1999.measures.errors import Errors
 from cysyk1999.measures.runs import (
     CYLINDERS,
     FAST,
@@ -25,21 +27,24 @@ from cysyk1999.measures.runs import (
     WITHIN_400,
 )
 from cysyk1999.measures.steady import DEPTH_SCENES, SPEED_SCENES
-from cysyk1999.measures.table import MEASURES, Measures
+from cysyk1999.measures.table import MEASURES, Instead, Measures
 
 SETS: dict[str, tuple[str, ...]] = {
-    "nine": tuple(NINE.scenes.values()),
-    "fast_nine": tuple(FAST.scenes.values()),
-    "ridged_nine": tuple(RIDGED_NINE.scenes.values()),
+    "nine": tuple(NINE.values()),
+    "fast_nine": tuple(FAST.values()),
+    "ridged_nine": tuple(RIDGED_NINE.values()),
     "cylinders": tuple(NINE[k] for k in CYLINDERS),
     "within_350": tuple(NINE[k] for k in WITHIN_350),
     "cylinders_within_400": tuple(NINE[k] for k in WITHIN_400 if k != "flat"),
-    "five_strokes": tuple(SPEEDS.scenes.values()),
-    "three_strokes": tuple(SUB_SPEEDS.scenes.values()),
+    "five_strokes": tuple(SPEEDS.values()),
+    "three_strokes": tuple(SUB_SPEEDS.values()),
     "four_depths": tuple(DEPTH_SCENES.values()),
     "three_speeds": tuple(SPEED_SCENES.values()),
 }
 """Sets of scenes by the name they have in the column `of`."""
+
+GIVEN = ("input", "count")
+"""Roles of what goes into the simulations: printed in full, without an error."""
 
 MADE: dict[str, Callable[[list[float]], float]] = {
     "largest": max,
@@ -66,27 +71,19 @@ class Number:
         """Read a row of the reference table. Raises ValueError, naming the row, for an unknown
         measure or unit that differs.
         """
-        if row["measure"] not in MEASURES:
-            raise ValueError(
-                f"{row.name}: measure '{row['measure']}' is not one of "
-                f"{', '.join(sorted(MEASURES))}"
-            )
-        unit = MEASURES[row["measure"]].unit
-        if unit != row["units"]:
-            raise ValueError(
-                f"{row.name}: units '{row['units']}', its measure {row['measure']} has '{unit}'"
-            )
+        name, units = row["measure"], row["units"]
+        if name not in MEASURES:
+            known = ", ".join(sorted(MEASURES))
+            raise ValueError(f"{row.name}: measure '{name}' is not one of {known}")
+        if (unit := MEASURES[name].unit) != units:
+            raise ValueError(f"{row.name}: units '{units}', its measure {name} has '{unit}'")
         made, found, names = row["of"].partition(" of ")
         if not found:
             made, names = "largest", row["of"]
         if made not in MADE:
             raise ValueError(f"{row.name}: of '{row['of']}' begins with none of {', '.join(MADE)}")
-        return cls(
-            row["measure"],
-            row["at"],
-            made,
-            tuple(s for name in names.split() for s in SETS.get(name, (name,))),
-        )
+        scenes = tuple(scene for word in names.split() for scene in SETS.get(word, (word,)))
+        return cls(name, row["at"], made, scenes)
 
     def __call__(self, measures: Measures) -> float:
         return float(MADE[self.made](list(self._values(measures))))
@@ -94,16 +91,13 @@ class Number:
     def _values(self, measures: Measures) -> Iterator[float]:
         for scene in self.scenes:
             try:
-                values = (
-                    measures.find(self.measure, scene)
-                    if not self.at
-                    else {"": measures(self.measure, scene, self.at)}
-                )
+                if self.at:
+                    yield measures(self.measure, scene, self.at)
+                else:
+                    yield from measures.find(self.measure, scene).values()
             except KeyError:
-                if self.made == "number":
-                    continue
-                raise
-            yield from values.values()
+                if self.made != "number":
+                    raise
 
 
 def numbers(reference: pd.DataFrame) -> dict[str, Number]:
@@ -113,3 +107,18 @@ def numbers(reference: pd.DataFrame) -> dict[str, Number]:
     return {
         id_: Number.of(row) for id_, row in reference.iterrows() if row["role"] not in ("", "trend")
     }
+
+
+def judged(
+    entry: pd.Series, fine: Measures, instead: Instead
+) -> tuple[Number, float, Errors, str, str]:
+    """A row's number, its value, its errors, its verdict and how far outside it is.
+
+    What goes into the simulations, and what a scene alone tells, has no error. Raises KeyError for
+    what was not simulated.
+    """
+    number = Number.of(entry)
+    value, errors = number(fine), Errors(0.0, 0.0, 0.0)
+    if entry["role"] not in GIVEN and MEASURES[number.measure].of != "scene":
+        errors = instead.errors(number, value)
+    return number, value, errors, *judge(value, errors.total, entry)

@@ -9,14 +9,14 @@ was fitted to speaks, as such, where nothing else does.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
 from cysyk1999.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
-from cysyk1999.claims.rows import Number
+from cysyk1999.claims.rows import judged
 from cysyk1999.claims.trends import TRENDS
-from cysyk1999.claims.verdicts import digits, judge
+from cysyk1999.claims.verdicts import digits, joined
 from cysyk1999.measures.table import Instead, Measures
 
 
@@ -54,11 +54,9 @@ def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame)
             break
     else:
         return None
-    rank, chosen = min(found, key=lambda pair: pair[0])
+    _, chosen = min(found, key=lambda pair: pair[0])
     holds = sum(one.verdict == "holds" for _, one in found)
-    return Said(
-        f"{chosen.ids}; {holds} of {len(found)} hold", *(getattr(chosen, k) for k in _PARTS)
-    )
+    return replace(chosen, ids=f"{chosen.ids}; {holds} of {len(found)} hold")
 
 
 SPEAKING = (("trend", "result"), ("calibrated",))
@@ -67,60 +65,42 @@ DRAWN = "(headline)"
 """In the condition of a row that is about the strain energy drawn, where others are about other
 definitions.
 """
-_PARTS = ("words", "condition", "verdict", "number", "detail")
 
 
 def _judged(row: pd.Series, fine: Measures, instead: Instead) -> tuple[int, Said] | None:
+    """The rank of a row among those that speak, and what it says."""
+    about, condition = _plain(row["quantity"]), _plain(row["condition"])
     try:
         if row["form"] == "trend":
             trend = TRENDS[row.name](fine)
-            verdict, *details = "holds" if trend.holds else "fails", *trend.note.split("; ")
-            short = next(
-                (each for each in details if each.startswith(("not for", "not from"))), ""
-            ) or _counted(trend.shown, row)
-            long = "; ".join(
-                dict.fromkeys(filter(None, (details[0], short if short in details else "")))
-            )
-            parts = (
-                row.name,
-                _plain(row["quantity"]),
-                _plain(row["condition"]),
-                verdict,
-                short,
-                _plain(long) or short,
-            )
-            return (2 if trend.holds else 0), Said(*parts)
-        measured = Number.of(row)
-        value = measured(fine)
+            first, *others = trend.note.split("; ")
+            failing = [
+                part for part in (first, *others) if part.startswith(("not for", "not from"))
+            ]
+            short = failing[0] if failing else _counted(trend.shown, row)
+            long = _plain(joined(*dict.fromkeys((first, *failing[:1])))) or short
+            verdict = "holds" if trend.holds else "fails"
+            return 2 * trend.holds, Said(row.name, about, condition, verdict, short, long)
+        _, value, _, verdict, remark = judged(row, fine, instead)
     except KeyError:
         return None
-    verdict, remark = judge(value, instead.errors(measured, value).total, row)
     if verdict == "not_comparable":
         return None
-    units, scale = (
-        ("kPa", 1e-3)
-        if row["units"] == "Pa" and "pressure" in row["quantity"]
-        else (row["units"], 1.0)
-    )
-    stated = " to ".join(
-        f"{scale * row[end]:g}" for end in (("low",) if row["form"] == "value" else ("low", "high"))
-    )
+    units, scale = row["units"], 1.0
+    if units == "Pa" and "pressure" in row["quantity"]:
+        units, scale = "kPa", 1e-3
+    ends = ("low",) if row["form"] == "value" else ("low", "high")
+    stated = _shown(" to ".join(f"{scale * row[end]:g}" for end in ends), units)
     axis = "on an axis of " if row["form"] == "axis" else ""
     doubt = ", reading uncertain" if row["kind"] == "garbled" else ""
-    words = f"{_plain(row['quantity'])} {axis}{_shown(stated, units)}{doubt}"
-    condition = "; ".join(
-        filter(
-            None,
-            (_plain(row["condition"]), "the pad was fitted to it" * (row["role"] == "calibrated")),
-        )
-    )
-    holds = verdict in ("inside", "plausible")
+    condition = joined(condition, "the pad was fitted to it" * (row["role"] == "calibrated"))
+    holds = verdict != "outside"
     shown = _shown(scale * value, units)
     remark = re.sub(r"^by \S+ \((.+)\)$", r"\1", remark.partition(", ")[0])
-    rank = (4 if holds else 3) if row["form"] == "axis" else 2 if holds else 1
+    rank = (4 if holds else 3) if axis else 2 if holds else 1
     return rank, Said(
         row.name,
-        words,
+        f"{about} {axis}{stated}{doubt}",
         condition,
         "holds" if holds else "fails",
         shown,

@@ -117,11 +117,9 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
     rows = []
     for quantity, units, measure, at, ids in QUANTITIES:
         for label in SHAPES:
-            values = {
-                "base": _read(fine, measure, NINE[label], at),
-                "base_draft": _read(fine, measure, variant_scene(BASE, label), at),
-                **{v: _read(fine, measure, variant_scene(v, label), at) for v in VARIANTS},
-            }
+            scenes = {v: variant_scene(v, label) for v in VARIANTS}
+            scenes |= {"base": NINE[label], "base_draft": variant_scene(BASE, label)}
+            values = {k: _read(fine, measure, scene, at) for k, scene in scenes.items()}
             row = {
                 "quantity": quantity,
                 "surface": label,
@@ -167,9 +165,7 @@ def _nearest(label: str) -> str:
 
 
 NEAREST = {
-    scene: _nearest(label)
-    for runs in (NINE, FAST, RIDGED_NINE)
-    for label, scene in runs.scenes.items()
+    scene: _nearest(label) for runs in (NINE, FAST, RIDGED_NINE) for label, scene in runs.items()
 }
 NEAREST[PADS["homogeneous"]] = "flat"
 """Scene of one of the nine surfaces -> the surface of the variants that stands in for it."""
@@ -187,26 +183,24 @@ def evidence(
     simulated.
     """
     entry = reference.loc[id_]
+
+    def of_variant(variant: str) -> float:
+        scenes = {scene: variant_scene(variant, k) for scene, k in NEAREST.items()}
+        return number(fine.standing_in(scenes))
+
     try:
-        before = number(
-            fine.standing_in({scene: variant_scene(BASE, k) for scene, k in NEAREST.items()})
-        )
+        before = of_variant(BASE)
         if not before and value:
             return "variants: 0 under the nearest surface of theirs"
         shown, fits = [], []
         exact = all(NINE[NEAREST[scene]] == scene for scene in number.scenes)
         for variant in VARIANTS:
-            after = number(
-                fine.standing_in({scene: variant_scene(variant, k) for scene, k in NEAREST.items()})
-            )
+            after = of_variant(variant)
             fits.append(is_inside(after if exact else value * after / before, error, entry))
             text = f"{significant(after, 3):g}" if exact else f"{after / before - 1:+.0%}"
             if fits[-1]:
-                text += (
-                    " (inside)"
-                    if _widths_fit(fine, variant, reference)
-                    else " (inside, widths outside)"
-                )
+                fit = _widths_fit(fine, variant, reference)
+                text += " (inside)" if fit else " (inside, widths outside)"
             shown.append(f"{variant} {text}")
     except KeyError:
         return ""

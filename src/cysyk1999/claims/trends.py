@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cysyk1999.claims.verdicts import digits
+from cysyk1999.claims.verdicts import digits, joined
 from cysyk1999.measures.table import Measures
 
 ALIKE = 0.15
@@ -62,7 +62,7 @@ def everywhere(outcome: Mapping[str, bool], what: str = "", needed: int | None =
     """Whether something holds in every case; the number shown counts those for which it does."""
     failing = [label for label, holds in outcome.items() if not holds]
     count = len(outcome) - len(failing)
-    note = "; ".join(filter(None, (what, f"not for {', '.join(failing)}" if failing else "")))
+    note = joined(what, f"not for {', '.join(failing)}" if failing else "")
     return Trend(count >= (needed or len(outcome)), count, note)
 
 

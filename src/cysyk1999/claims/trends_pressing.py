@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise, product
+
 import numpy as np
 
 from cysyk1999.claims.trends import Trend, everywhere, of_each, ordered, trend
+from cysyk1999.claims.verdicts import joined
 from cysyk1999.measures.of_presses import ENERGIES
 from cysyk1999.measures.responses import straight_line
 from cysyk1999.measures.runs import CYLINDERS, FAST, NINE, PADS, RIDGED_NINE
@@ -43,19 +46,15 @@ BEFORE = {label: NINE[label] for label in CYLINDERS[:-2]}
 @trend("TR04", quantity="energy_at_top", at="915 um", what="energy at 915 um, Pa")
 @trend("TR05", quantity="highest_energy_rate", at="", what="rate, Pa/s")
 def order_of_surfaces(m, quantity, at, what, growing=True):
-    return ordered(of_each(m, quantity, NINE.scenes, at), what, growing)
+    return ordered(of_each(m, quantity, NINE, at), what, growing)
 
 
 @trend("TR22")
 def pressure_exceeds_energy_by_more(m):
-    pressure, energy = (
-        of_each(m, *q)
-        for q in (("centre_pressure", NINE.scenes, "end"), ("energy_at_end", NINE.scenes, "915 um"))
-    )
-    return ordered(
-        {k: PRESSURE_SCALE * pressure[k] - energy[k] for k in NINE},
-        "0.04 x pressure less energy, Pa",
-    )
+    pressure = of_each(m, "centre_pressure", NINE, "end")
+    energy = of_each(m, "energy_at_end", NINE, "915 um")
+    left = {k: PRESSURE_SCALE * pressure[k] - energy[k] for k in NINE}
+    return ordered(left, "0.04 x pressure less energy, Pa")
 
 
 # --- ramp and hold --------------------------------------------------------------------------------
@@ -65,34 +64,26 @@ def pressure_exceeds_energy_by_more(m):
 @trend("TR07", quantity="width", sign=1)
 @trend("TR09", quantity="centre_pressure", sign=-1)
 def changes_in_the_hold(m, quantity, sign):
-    top, end = (of_each(m, quantity, NINE.scenes, at) for at in ("top", "end"))
+    top, end = (of_each(m, quantity, NINE, at) for at in ("top", "end"))
     return everywhere({k: sign * (end[k] - top[k]) > 0 for k in NINE})
 
 
 @trend("TR08")
 def contact_grows_faster_in_the_ramp(m):
-    def faster(scene):
-        top = m("width", scene, "top")
-        return top / m("ramp_time", scene) > (m("width", scene, "end") - top) / m(
-            "hold_time", scene
-        )
-
-    return everywhere({k: faster(scene) for k, scene in NINE.scenes.items()})
+    top, end = (of_each(m, "width", NINE, at) for at in ("top", "end"))
+    ramp, hold = (of_each(m, q, NINE) for q in ("ramp_time", "hold_time"))
+    return everywhere({k: top[k] / ramp[k] > (end[k] - top[k]) / hold[k] for k in NINE})
 
 
 @trend("T327")
 def double_peak_of_the_plate(m):
     pressure, time = m.find("ramp_pressure", PLATE), m.find("ramp_pressure_time", PLATE)
     if "first" not in pressure:
-        return Trend(
-            False, 0, f"rises to {pressure['top']:.0f} Pa at the ramp's end with no peak before"
-        )
+        note = f"rises to {pressure['top']:.0f} Pa at the ramp's end with no peak before"
+        return Trend(False, 0, note)
     holds = time["dip"] < time["top"] and pressure["top"] > pressure["dip"]
-    return Trend(
-        bool(holds),
-        1 + holds,
-        ", ".join(f"{pressure[k]:.0f} Pa at {time[k]:.2f} s" for k in ("first", "dip", "top")),
-    )
+    note = ", ".join(f"{pressure[k]:.0f} Pa at {time[k]:.2f} s" for k in ("first", "dip", "top"))
+    return Trend(holds, 1 + holds, note)
 
 
 @trend("T328")
@@ -107,10 +98,9 @@ def peaks_before_the_top(m):
 @trend("T328a")
 def peaks_sooner_when_broad(m):
     times = list(of_each(m, "peak_time", BEFORE).values())
-    sooner = [True, *(b >= a for a, b in zip(times, times[1:], strict=False))]
-    return everywhere(
-        dict(zip(BEFORE, sooner, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)"
-    )
+    sooner = [True, *(b >= a for a, b in pairwise(times))]
+    note = f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)"
+    return everywhere(dict(zip(BEFORE, sooner, strict=True)), note)
 
 
 @trend("T328b", label="630")
@@ -124,9 +114,8 @@ def peaks_at_the_top(m, label):
 
 @trend("TR15")
 def largest_and_centre_decay_alike(m):
-    (largest, half), (centre, half_centre) = (
-        (m("fall_in_hold", K210, k), m("half_of_fall", K210, k)) for k in ("largest", "centre")
-    )
+    largest, centre = (m("fall_in_hold", K210, k) for k in ("largest", "centre"))
+    half, half_centre = (m("half_of_fall", K210, k) for k in ("largest", "centre"))
     note = (
         f"fall {largest:.1%} and {centre:.1%}, half of it after {half:.2f} and {half_centre:.2f} s"
     )
@@ -144,7 +133,7 @@ def same_time_constant_at_every_node(m):
     note = (
         f"half of the fall after {times} s at {m('nodes_past_peak', K210):.0f} nodes past the peak"
     )
-    return Trend(bool((long - short) / mean <= 0.3), (long - short) / mean, note)
+    return Trend((long - short) / mean <= 0.3, (long - short) / mean, note)
 
 
 @trend("TR17")
@@ -162,7 +151,7 @@ def later_nodes_peak_lower(m):
 def falls_but_at_the_edge(m):
     turn, edge = m("falls_up_to", K210), m("width", K210, "end") / 2
     note = f"falls up to {turn:.2f} mm from the centre, rises beyond; edge at {edge:.2f} mm"
-    return Trend(bool(np.isfinite(turn)), turn, note)
+    return Trend(np.isfinite(turn), turn, note)
 
 
 # --- shape of the pressure ------------------------------------------------------------------------
@@ -170,23 +159,17 @@ def falls_but_at_the_edge(m):
 
 @trend("TR10")
 def pressure_peaks_off_the_centre(m):
-    excess, at = (
-        of_each(m, "off_centre_excess", NINE.scenes, "end"),
-        of_each(m, "off_centre_place", NINE.scenes),
-    )
+    excess, at = of_each(m, "off_centre_excess", NINE, "end"), of_each(m, "off_centre_place", NINE)
     twins = {k: e for k, e in excess.items() if e > TWIN}
     where = ", ".join(f"{k} at ±{at[k]:.2f} mm ({e:+.0%})" for k, e in twins.items())
     without = ", ".join(label for label in BROAD if label not in twins)
-    return Trend(
-        not without,
-        len(twins),
-        f"end of hold: {where or 'none'}" + (f"; not for {without}" if without else ""),
-    )
+    note = joined(f"end of hold: {where or 'none'}", without and f"not for {without}")
+    return Trend(not without, len(twins), note)
 
 
 @trend("TR11")
 def pressure_is_symmetric(m):
-    found = of_each(m, "asymmetry", NINE.scenes)
+    found = of_each(m, "asymmetry", NINE)
     return everywhere(
         {k: v <= 1e-3 for k, v in found.items()}, "mirror images within 0.1 % of the peak"
     )
@@ -224,12 +207,10 @@ def peak_moves_out(m):
 
 @trend("TR19")
 def energy_peaks_at_the_centre(m):
-    found = {
-        f"{label} at {depth}": m("energy_peak_offset", FAST[label], depth) <= 1.01
-        for label in ("flat", "158", "1260")
-        for depth in ("800 um", "915 um")
-    }
-    return everywhere(found)
+    places = product(("flat", "158", "1260"), ("800 um", "915 um"))
+    return everywhere(
+        {f"{k} at {z}": m("energy_peak_offset", FAST[k], z) <= 1.01 for k, z in places}
+    )
 
 
 def _definitions(function):
@@ -243,7 +224,7 @@ def _definitions(function):
 @_definitions
 def energy_peaks_and_decays(m, at, peak):
     high, top, end = (
-        of_each(m, q, NINE.scenes, at) for q in ("highest_energy", "energy_at_top", "energy_at_end")
+        of_each(m, q, NINE, at) for q in ("highest_energy", "energy_at_top", "energy_at_end")
     )
     note = ", ".join(f"{k}: {end[k] / top[k] - 1:+.0%}" for k in ("flat", "210", "1260"))
     outcome = {k: top[k] == high[k] if peak else end[k] < top[k] for k in NINE}
@@ -280,7 +261,7 @@ def pressure_gives_energy(m):
 @trend("TR83", runs=NINE, window="peak", what="peak", silent=False)
 def rate_grows(m, runs, window, what, silent):
     """From surface to surface; `silent` ones may come first."""
-    found = of_each(m, "rate", runs.scenes, window)
+    found = of_each(m, "rate", runs, window)
     first = next((i for i, v in enumerate(found.values()) if v > 0), 0) if silent else 0
     names, values = list(found)[first:], list(found.values())[first:]
     wrong = [f"{names[i]} to {names[i + 1]}" for i in np.flatnonzero(np.diff(values) <= 0)]
@@ -295,7 +276,7 @@ def rate_grows(m, runs, window, what, silent):
 
 @trend("TR81")
 def impulses_begin_late(m):
-    starts = {k: v for k, v in of_each(m, "first_impulse", FAST.scenes).items() if np.isfinite(v)}
+    starts = {k: v for k, v in of_each(m, "first_impulse", FAST).items() if np.isfinite(v)}
     span = f"{min(starts.values()):.3f} to {max(starts.values()):.3f} s" if starts else ""
     note = f"first impulse {span} after the start, with no variability" if starts else ""
     return everywhere({k: v >= DELAY for k, v in starts.items()}, note, max(len(starts), 1))
@@ -304,9 +285,9 @@ def impulses_begin_late(m):
 @trend("TR82")
 def rate_peaks_and_decays(m):
     outcome = {}
-    for label, scene in NINE.scenes.items():
+    for label, scene in NINE.items():
         if m("rate", scene, "highest of hold") > 0:
-            at_top = bool(np.isclose(m("rate_peak_time", scene), m("ramp_end_time", scene)))
+            at_top = np.isclose(m("rate_peak_time", scene), m("ramp_end_time", scene))
             outcome[label] = at_top and m("rate", scene, "end") < m("rate", scene, "start of hold")
     return everywhere(
         outcome, f"{len(outcome)} surfaces make impulses in the hold", max(len(outcome), 1)
@@ -317,14 +298,10 @@ def rate_peaks_and_decays(m):
 @trend("TR86", x=("highest_pressure", "highest"), y=("rate", "peak"))
 @trend("TR89", x=("highest_energy_rate", ""), y=("rate", "peak"))
 def linear(m, x, y):
-    slope, _, share = straight_line(
-        *(list(of_each(m, q, NINE.scenes, at).values()) for q, at in (x, y))
-    )
-    return Trend(
-        bool(share >= LINEAR and slope > 0),
-        share,
-        f"R2 {share:.3f} of the line through predicted rates",
-    )
+    points = (list(of_each(m, q, NINE, at).values()) for q, at in (x, y))
+    slope, _, share = straight_line(*points)
+    note = f"R2 {share:.3f} of the line through predicted rates"
+    return Trend(share >= LINEAR and slope > 0, share, note)
 
 
 @trend("TR85")
@@ -332,10 +309,10 @@ def rates_saturate(m):
     curvature = [0.0, *(2e3 / m("diameter", NINE[k]) for k in CYLINDERS)]
     outcome, notes = {}, []
     for window in ("peak", "steady"):
-        rate = list(of_each(m, "rate", NINE.scenes, window).values())
+        rate = list(of_each(m, "rate", NINE, window).values())
         slope, _, share = straight_line(curvature[:-1], rate[:-1])
         last = (rate[-1] - rate[-2]) / (curvature[-1] - curvature[-2])
-        outcome[window] = bool(share >= LINEAR and last < 0.5 * slope)
+        outcome[window] = share >= LINEAR and last < 0.5 * slope
         notes.append(
             f"{window}: R2 {share:.3f} below the highest, then {last / slope:.2f} as steep"
         )
@@ -347,11 +324,8 @@ def saturates_less_when_shallow(m):
     shallow, deep = (
         m(q, SHARPEST, "hold") / max(m(q, K210, "hold"), 1e-9) for q in ("rate_at_600_um", "rate")
     )
-    return Trend(
-        bool(shallow > deep),
-        shallow / deep,
-        f"1260 over 210: {shallow:.1f} from 600 um, {deep:.1f} from 915 um",
-    )
+    note = f"1260 over 210: {shallow:.1f} from 600 um, {deep:.1f} from 915 um"
+    return Trend(shallow > deep, shallow / deep, note)
 
 
 # --- a pad with inner ridges ----------------------------------------------------------------------
@@ -364,7 +338,7 @@ PLACES = {"centre": "915 um", "46 um": "915 um, 46 um"}
 def rises_and_falls_as_without_ridges(m):
     found = {
         f"{k} at {p}": m("correlation_with_plain", s, p)
-        for k, s in RIDGED_NINE.scenes.items()
+        for k, s in RIDGED_NINE.items()
         for p in PLACES
     }
     worst = min(found, key=found.get)
@@ -378,10 +352,9 @@ def rises_and_falls_as_without_ridges(m):
 def same_order_with_ridges(m):
     outcome, notes = {}, []
     for place, at in PLACES.items():
-        values = list(of_each(m, "energy_at_top", RIDGED_NINE.scenes, at).values())
-        outcome |= {
-            f"{k} at {place}": b > a for k, a, b in zip(CYLINDERS, values, values[1:], strict=False)
-        }
+        values = list(of_each(m, "energy_at_top", RIDGED_NINE, at).values())
+        steps = zip(CYLINDERS, pairwise(values), strict=True)
+        outcome |= {f"{k} at {place}": b > a for k, (a, b) in steps}
         notes.append(f"{place} {values[0]:.0f} (flat) to {values[-1]:.0f} Pa (1260)")
     return everywhere(outcome, ", ".join(notes))
 
@@ -391,10 +364,8 @@ def ridges_set_the_sharpest_apart(m):
     def apart(runs, at):
         return m("highest_energy", runs["1260"], at) / m("highest_energy", runs["630"], at)
 
-    plain, centre, beside = (
-        apart(NINE, "915 um"),
-        *(apart(RIDGED_NINE, at) for at in PLACES.values()),
-    )
+    plain = apart(NINE, "915 um")
+    centre, beside = (apart(RIDGED_NINE, at) for at in PLACES.values())
     note = (
         f"1260 over 630 1/m: {plain:.3f} without ridges, with ridges {centre:.3f} at the "
         f"centre, {beside:.3f} at 46 um"
@@ -404,12 +375,10 @@ def ridges_set_the_sharpest_apart(m):
 
 @trend("TR46")
 def ridges_change_the_magnitude(m):
-    outcome, ratios = {}, {}
-    plain = of_each(m, "highest_energy", NINE.scenes, "915 um")
+    plain, ratios = of_each(m, "highest_energy", NINE, "915 um"), {}
     for place, at in PLACES.items():
-        ratios[place] = {
-            k: v / plain[k] for k, v in of_each(m, "highest_energy", RIDGED_NINE.scenes, at).items()
-        }
+        ridged = of_each(m, "highest_energy", RIDGED_NINE, at)
+        ratios[place] = {k: ridged[k] / plain[k] for k in NINE}
     outcome = {f"{k} at {place}": abs(ratios[place][k] - 1) > 0.1 for k in NINE for place in PLACES}
     note = ", ".join(
         f"{min(v.values()):.2f} to {max(v.values()):.2f} at {k}" for k, v in ratios.items()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +20,6 @@ from cysyk1999.claims.trends import (
     stepwise,
     trend,
 )
-from cysyk1999.measures.direction import OFFSETS
 from cysyk1999.measures.responses import BIN
 from cysyk1999.measures.runs import NINE, PLAIN, RIDGED, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
@@ -100,15 +100,14 @@ def velocity_hardly_matters(m, quantity, trace):
     found = list(by_speed(m, quantity).values())
     spread, change = spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
     worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
-    note = f"peaks change by up to {max(map(abs, change.values())):.0f} %; "
-    note += (
-        f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most "
-        f"{spread[worst]:.1f} % (K = {worst}); "
+    largest = max(change.values(), key=abs)
+    note = (
+        f"peaks change by up to {abs(largest):.0f} %; they spread by "
+        f"{np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % "
+        f"(K = {worst}); whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s "
+        f"{listed(change, '%', 2)}"
     )
-    note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(
-        change, "%", 2
-    )
-    return Trend(max(map(abs, change.values())) <= NEGLIGIBLE, max(change.values(), key=abs), note)
+    return Trend(abs(largest) <= NEGLIGIBLE, largest, note)
 
 
 @trend("TR31")
@@ -185,10 +184,8 @@ def contact_lost_later_stroked(m):
 
 def _lost(m, scene) -> tuple[tuple[float, float], str]:
     corner, second = (m("lost_contact", scene, k) for k in ("corner", "second"))
-    return (
-        corner,
-        second,
-    ), f"over {corner:.2f} mm at the corner and {second:.2f} mm before the second convexity"
+    note = f"over {corner:.2f} mm at the corner and {second:.2f} mm before the second convexity"
+    return (corner, second), note
 
 
 @trend("TR37")
@@ -212,10 +209,8 @@ def contact_kept_when_slow(m):
 @trend("T263")
 def energy_falls_at_the_sharpest(m):
     found = by_speed(m, "convexity_energy")
-    outcome = {
-        v: [*each.values()][-3] > [*each.values()][-2] > [*each.values()][-1]
-        for v, each in found.items()
-    }
+    last = {v: [*each.values()][-3:] for v, each in found.items()}
+    outcome = {v: before > sharp > sharpest for v, (before, sharp, sharpest) in last.items()}
     return everywhere(outcome, "10 mm/s: " + listed(found["10 mm/s"], "Pa"))
 
 
@@ -223,9 +218,8 @@ def _stroked_over_pressed(m) -> dict[str, float]:
     """Peak strain energy stroked over that pressed, at the cylinders' curvatures (stroked:
     interpolated).
     """
-    found, exact = (
-        list(m.find(q, TEN).values()) for q in ("convexity_energy", "convexity_curvature")
-    )
+    measures = ("convexity_energy", "convexity_curvature")
+    found, exact = (list(m.find(q, TEN).values()) for q in measures)
     pressed = {k: m("highest_energy", NINE[k], "915 um") for k in WITHIN_400 if k != "flat"}
     return {k: float(np.interp(float(k), exact, found)) / v for k, v in pressed.items()}
 
@@ -243,7 +237,7 @@ def falls_below_pressed(m):
     ratios = _stroked_over_pressed(m)
     values = list(ratios.values())
     below = values[next((i for i, v in enumerate(values) if v < 1), len(values)) :]
-    falls = len(below) > 1 and max(below) < 1 and bool((np.diff(below) < 0).all())
+    falls = len(below) > 1 and max(below) < 1 and (np.diff(below) < 0).all()
     return Trend(falls, values[-1], "stroked over pressed " + listed(ratios, "", 2))
 
 
@@ -269,28 +263,22 @@ def peaks_closer_when_sharp(m, quantity):
     outcome, notes = {}, []
     for speed, found in by_speed(m, quantity).items():
         seen = [found[k] for k in ("52", "79", "105") if found[k] > 0]
-        outcome[speed] = len(seen) >= 2 and bool((np.diff(seen) < 0).all())
+        outcome[speed] = len(seen) >= 2 and (np.diff(seen) < 0).all()
         notes.append(f"{speed}: " + ", ".join(f"{v:.1f}" for v in seen))
     return everywhere(outcome, "mm apart from K = 52 on, " + "; ".join(notes))
 
 
 @trend("TR60")
 def eq_4_4_agrees(m):
-    residual, share = (
-        of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, k) for k in ("residual", "R2")
-    )
-    note = (
-        "residual over the energy "
-        + listed({k: 100 * v for k, v in residual.items()}, "%")
-        + "; R2 "
-        + listed(share, "", 2)
-    )
+    residual, share = (of_each(m, "departure_of_eq_4_4", SPEEDS, k) for k in ("residual", "R2"))
+    shown = listed({k: 100 * v for k, v in residual.items()}, "%")
+    note = f"residual over the energy {shown}; R2 {listed(share, '', 2)}"
     return everywhere({k: v <= ALIKE for k, v in residual.items()}, note)
 
 
 @trend("TR61")
 def eq_4_4_departs_with_velocity(m):
-    residual = of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, "residual")
+    residual = of_each(m, "departure_of_eq_4_4", SPEEDS, "residual")
     return stepwise({k: 100 * v for k, v in residual.items()}, "%")
 
 
@@ -310,11 +298,8 @@ def impulses_under_convexities_only(m):
 @trend("TR63")
 def burst_rate_grows(m):
     found = stepwise(m.find("burst_rate", TEN), "impulses/s")
-    return Trend(
-        found.holds,
-        found.shown,
-        f"{found.note}; largest rates " + listed(m.find("convexity_rate", TEN), "impulses/s"),
-    )
+    largest = listed(m.find("convexity_rate", TEN), "impulses/s")
+    return replace(found, note=f"{found.note}; largest rates {largest}")
 
 
 @trend("TR65")
@@ -337,29 +322,19 @@ def burst_width_hardly_varies(m):
 
 @trend("TR67")
 def stroked_rate_between_those_pressed(m):
-    low, rate, high = (
-        m("rate", NINE["79"], "end"),
-        m("burst_rate", TEN, "79"),
-        m("rate", NINE["79"], "peak"),
-    )
-    return Trend(
-        low < rate < high,
-        rate,
-        f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m",
-    )
+    low, high = (m("rate", NINE["79"], at) for at in ("end", "peak"))
+    rate = m("burst_rate", TEN, "79")
+    note = f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m"
+    return Trend(low < rate < high, rate, note)
 
 
 @trend("TR68")
 def stroked_rate_above_the_peak_pressed(m):
-    rate = m.find("burst_rate", TEN)
-    ratios = {
-        k: rate["157" if k == "158" else k] / m("rate", NINE[k], "peak")
-        for k in WITHIN_350
-        if k != "flat"
-    }
-    return Trend(
-        ratios["315"] > 1, ratios["315"], "stroked over peak pressed " + listed(ratios, "", 2)
-    )
+    rate = dict(m.find("burst_rate", TEN))
+    rate["158"] = rate["157"]
+    ratios = {k: rate[k] / m("rate", NINE[k], "peak") for k in WITHIN_350 if k != "flat"}
+    note = "stroked over peak pressed " + listed(ratios, "", 2)
+    return Trend(ratios["315"] > 1, ratios["315"], note)
 
 
 @trend("TR70")
@@ -396,24 +371,14 @@ def receptors_differ(m):
         m("energy_at_end", RIDGED["right"], at)
         for at in ("915 um, -46 um", "915 um", "915 um, 46 um", "935 um")
     )
-    values = dict(
-        zip(
-            (k.replace("−", "-").replace("µ", "u") for k in OFFSETS),
-            (left, centre, right),
-            strict=True,
-        )
-    )
+    values = {"x = -46 um": left, "centre": centre, "x = 46 um": right}
     note = ", ".join(f"{v:.0f} Pa at {k}" for k, v in values.items())
     note += (
         " at the end; the centre lies in the epidermis of the tip, 20 um deeper, in the "
         f"dermis, it is {tip:.0f} Pa"
     )
-    ratio = max(values.values()) / min(values.values())
-    return Trend(
-        left / right >= 2,
-        ratio,
-        f"{note}; of the two in the dermis one has {left / right:.1f} times the other's",
-    )
+    note += f"; of the two in the dermis one has {left / right:.1f} times the other's"
+    return Trend(left / right >= 2, max(values.values()) / min(values.values()), note)
 
 
 @trend("T321", strokes=RIDGED)
@@ -455,10 +420,8 @@ def islands_under_outer_ridges(m):
     found = [m.find("islands_of_contact", scene) for scene in OUTER.values()]
     fewest, most = min(f["fewest"] for f in found), max(f["most"] for f in found)
     cuts = sum(m("steps_cut", scene) for scene in OUTER.values())
-    volume, plain = (
-        min(m("smallest_volume", scene) for scene in OUTER.values()),
-        m("islands_of_contact", RIDGED["right"], "end"),
-    )
+    volume = min(m("smallest_volume", scene) for scene in OUTER.values())
+    plain = m("islands_of_contact", RIDGED["right"], "end")
     note = (
         f"{fewest:.0f} to {most:.0f} islands in the strokes ({plain:.0f} without outer ridges), "
         f"{cuts:.0f} steps cut, smallest det F {volume:.3f}"

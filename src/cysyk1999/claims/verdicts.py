@@ -52,29 +52,24 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not finite), and
     a remark.
     """
-    low, high = float(entry["low"]), float(entry["high"])
+    low, high, form = float(entry["low"]), float(entry["high"]), entry["form"]
     if not np.isfinite(value):
         return "not_comparable", "the simulation does not show it"
-    if entry["form"] == "estimate":
+    if form == "estimate":
         return "not_comparable", f"an estimate to compare with, not a truth; {value / low - 1:+.0%}"
-    if entry["form"] == "unlike":
+    if form == "unlike":
         return "not_comparable", ""
-    if entry["form"] == "value" and np.isnan(low):
+    if form == "value" and np.isnan(low):
         return "not_comparable", "not stated in the thesis"
 
     def helped(bound: float) -> float:
         return min(error, HELP * abs(bound))
 
-    if entry["form"] == "value":
-        allowed = max(float(entry["tolerance"]) * abs(low), helped(low), 1e-6 * abs(low))
-        if abs(value - low) <= allowed:
-            return "inside", ""
-        return "outside", f"by {value - low:+.3g} ({value / low - 1:+.0%})"
-    if entry["form"] == "axis":
+    if form == "axis":
+        tick = float(entry.get("tick", np.nan))
         if value > high + helped(high):
             return "outside", f"{value / high - 1:.0%} above the axis's end"
-        tick = float(entry.get("tick", np.nan))
-        if np.isfinite(tick) and value < tick - helped(tick):
+        if value < tick - helped(tick):
             return (
                 "outside",
                 f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would "
@@ -83,8 +78,12 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
         if np.isnan(tick) and value < FILL * high - helped(FILL * high):
             return "outside", f"fills only {value / high:.0%} of the axis"
         return "plausible", f"fills {value / high:.0%} of the axis"
-    read = float(entry.get("tolerance", np.nan)) * abs(low)
-    if low - max(helped(low), np.nan_to_num(read)) <= value <= high + helped(high):
+    tolerance = np.nan_to_num(float(entry.get("tolerance", np.nan))) * abs(low)
+    below, above = max(tolerance, helped(low)), helped(high)
+    if form == "value":
+        high, below = low, max(below, 1e-6 * abs(low))
+        above = below
+    if -below <= value - low and value - high <= above:
         return "inside", ""
     near = low if value < low else high
     return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"
@@ -106,3 +105,8 @@ def digits(value: float, count: int = 3) -> str:
     """
     text = f"{value:.{count}g}"
     return f"{value:.0f}" if "e+" in text else text
+
+
+def joined(*parts: str) -> str:
+    """The parts of a note that say something."""
+    return "; ".join(filter(None, parts))

@@ -10,13 +10,13 @@ from os import PathLike
 from pandas import DataFrame
 
 from cysyk1999.publishing.write import markdown
-from cysyk1999.reference_data import Column, read_table
+from cysyk1999.reference_data import TEXT, one_of, read_table
 
 CATALOGUE = {
-    "number": Column(text=True),
-    "kind": Column(words=("simulation", "comparison", "recording", "photograph", "schematic")),
-    "thesis_shows": Column(text=True),
-    "stand_in": Column(text=True, optional=True),
+    "number": TEXT,
+    "kind": one_of("simulation", "comparison", "recording", "photograph", "schematic"),
+    "thesis_shows": TEXT,
+    "stand_in": TEXT.or_nothing,
 }
 """Columns of ``config/reference/figures.csv``: what the thesis's figure is, and what is here in
 place of what is not public.

@@ -261,13 +261,11 @@ def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:
     if "stroke_distance" in history and np.ptp(history["stroke_distance"].values):
         history = loaded(history)
     leg = history["leg"].values
-    first = np.searchsorted(
-        leg, leg
-    )  # the unloaded pad is where the first leg begins, and the end of each where the next does
+    # the unloaded pad is where the first leg begins, and the end of each where the next does
+    first = np.searchsorted(leg, leg)
     count = np.arange(len(leg)) - first + (first > 0)
-    return history.isel(
-        time=np.flatnonzero((count % every == 0) | np.append(np.diff(leg) != 0, True))
-    )
+    shown = (count % every == 0) | np.append(np.diff(leg) != 0, True)
+    return history.isel(time=np.flatnonzero(shown))
 
 
 def norm(x: np.ndarray, y: np.ndarray) -> float:
@@ -292,30 +290,21 @@ def family_errors(
     For many lines of one quantity on one axis, of which some hardly rise from zero: relative to
     themselves these tell nothing.
     """
-    found = [
-        (norm(*curve(history)), astuple(_of_curve(history, companion, curve))) for curve in curves
-    ]
-    size, parts = np.array([size for size, _ in found]), np.array([parts for _, parts in found])
-    whole = np.linalg.norm(size) or np.inf
-    return Errors(
-        *(
-            np.linalg.norm(size[:, None] * np.where(size[:, None] > 0, parts, 0.0), axis=0) / whole
-        ).tolist()
-    )
+    curves = list(curves)
+    size = np.array([norm(*curve(history)) for curve in curves])
+    parts = np.array([astuple(_of_curve(history, companion, curve)) for curve in curves])
+    rising = np.where(size[:, None] > 0, size[:, None] * parts, 0.0)
+    return Errors(*np.linalg.norm(rising, axis=0) / (np.linalg.norm(size) or np.inf))
 
 
 def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) -> Errors:
-    x, y = curve(history)
-    share = 100 / (norm(x, y) or np.inf)
-    if companion is None:
-        return Errors(np.nan, np.nan, share * sampling(history, curve))
-    (xb, yb), sparse = curve(companion.both), curve(companion.sparse)
-    steps = STEPS_REMAIN * norm(xb, yb - np.interp(xb, *sparse))
-    return Errors(
-        share * companion.mesh_error(history, curve),
-        share * steps,
-        share * sampling(history, curve),
-    )
+    share = 100 / (norm(*curve(history)) or np.inf)
+    mesh, steps = np.nan, np.nan
+    if companion is not None:
+        (x, y), sparse = curve(companion.both), curve(companion.sparse)
+        mesh = companion.mesh_error(history, curve)
+        steps = STEPS_REMAIN * norm(x, y - np.interp(x, *sparse))
+    return Errors(share * mesh, share * steps, share * sampling(history, curve))
 
 
 def shared_place(place: float, companion: Companion | None) -> float:
@@ -335,11 +324,8 @@ def sampling(history: xr.Dataset, curve: Curve) -> float:
     what they are wrong by. Of a surface stepped over the pad nothing is left out: it is pressed at
     these points.
     """
-    if (
-        curve.outputs
-        and "scene" in history.attrs
-        and any(leg.fresh for leg in scene_of(history).motion)
-    ):
+    stepped = "scene" in history.attrs and any(leg.fresh for leg in scene_of(history).motion)
+    if curve.outputs and stepped:
         return 0.0
     x, y = curve(history)
     rough = [curve.sparse(history, every) for every in (2, 4)]

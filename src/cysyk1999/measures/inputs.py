@@ -9,18 +9,15 @@ from typing import Any
 import xarray as xr
 
 from cysyk1999.measures.errors import Companion
-from fingerpad.measures.kept import Each
+from fingerpad.measures.kept import LazyMapping
 from fingerpad.results import read_dataset
+from fingerpad.specimen.files import read_pad_mesh
 
 
-class _Opened(Each):
-    """Scene name -> what `opener` makes of its file; each file is opened once, and only if asked
-    for.
-    """
-
-    def __init__(self, opener: Callable[[Path], Any], paths: Iterable[Path]) -> None:
-        files = {path.parent.name: path for path in paths}
-        super().__init__(lambda scene: opener(files[scene]), files)
+def _opened(read: Callable[[Path], Any], paths: Iterable[Path]) -> LazyMapping:
+    """Scene name -> what its file holds; each file is opened once, and only if asked for."""
+    files = {path.parent.name: path for path in paths}
+    return LazyMapping(lambda scene: read(files[scene]), files)
 
 
 def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping]:
@@ -34,16 +31,15 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
         the companions on coarser meshes (:class:`cysyk1999.measures.errors.Companion`), whose files
         are both needed when one is looked at.
     """
-    files = [Path(path) for path in paths]
-    kinds: dict[str, list[Path]] = {"coarse": [], "coarse_mesh": [], "simulations": []}
-    for path in files:
-        if path.suffix == ".nc":
-            kinds.get(path.parent.parent.name, kinds["simulations"]).append(path)
-    mesh, both = (_Opened(read_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
+    kinds: dict[str, list[Path]] = {"coarse": [], "coarse_mesh": [], "own": [], "mesh": []}
+    for path in map(Path, paths):
+        kind = "mesh" if path.suffix == ".msh" else path.parent.parent.name
+        kinds[kind if kind in kinds else "own"].append(path)
+    mesh, both = (_opened(read_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
     return (
-        _Opened(read_dataset, kinds["simulations"]),
-        _Opened(_read_mesh, (path for path in files if path.suffix == ".msh")),
-        Each(lambda scene: Companion(mesh[scene], both[scene]), both),
+        _opened(read_dataset, kinds["own"]),
+        _opened(read_pad_mesh, kinds["mesh"]),
+        LazyMapping(lambda scene: Companion(mesh[scene], both[scene]), both),
     )
 
 
@@ -51,12 +47,6 @@ def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
     """Histories of the companions with coarser meshes and steps, by scene, of those among some
     files of the workflow.
     """
-    return _Opened(
+    return _opened(
         read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse")
     )
-
-
-def _read_mesh(path: Path) -> Any:
-    from fingerpad.specimen.files import read_pad_mesh
-
-    return read_pad_mesh(path)

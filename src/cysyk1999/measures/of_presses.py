@@ -33,6 +33,7 @@ from fingerpad.measures import features
 from fingerpad.measures.features import (
     PRESSURE,
     PRESSURE_SCALE,
+    Histories,
     centre_node,
     energy,
     profile,
@@ -41,9 +42,9 @@ from fingerpad.measures.features import (
     skin_at,
     surface_nodes,
 )
+from fingerpad.measures.kept import kept
 from fingerpad.measures.measure import (
     Measure,
-    Together,
     deep,
     forced,
     held,
@@ -356,7 +357,7 @@ def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
     return found
 
 
-@measure("1", lambda scene: held(scene) and scene.name in FAST.scenes.values())
+@measure("1", lambda scene: held(scene) and scene.name in FAST.values())
 def energy_peak_offset(history):
     """Distance of the largest energy from the centre at top and end, the larger, over the spacing
     of the receptors.
@@ -374,7 +375,7 @@ def energy_peak_offset(history):
     return found
 
 
-_PLAIN = {ridged: NINE[label] for label, ridged in RIDGED_NINE.scenes.items()}
+_PLAIN = {ridged: NINE[label] for label, ridged in RIDGED_NINE.items()}
 
 
 @measure("1", lambda scene: scene.name in _PLAIN, beside=True)
@@ -423,25 +424,26 @@ def first_impulse(history):
     return train[0] if len(train) else np.nan
 
 
-def _nine(runs: Together) -> dict[str, xr.Dataset]:
-    return {label: runs[scene] for label, scene in NINE.scenes.items()}
+def _nine(runs: Histories) -> dict[str, xr.Dataset]:
+    return {label: runs[scene] for label, scene in NINE.items()}
 
 
-def _shallow_law(runs: Together) -> tuple[ImpulseRate, float]:
+@kept
+def _shallow_law(runs: Histories) -> tuple[ImpulseRate, float]:
     return shallow_law(_nine(runs))
 
 
-@measure("impulses/s", named(NINE.scenes.values()), beside=True)
+@measure("impulses/s", named(NINE.values()), beside=True)
 def rate_at_600_um(history, runs):
     """By Eq 5-1 scaled to the mean energy of the nine surfaces (see `shallow_law`)."""
-    law, _ = runs.once(_shallow_law)
+    law, _ = _shallow_law(runs)
     return {window: rate_in(history, window, SHALLOW_DEPTH, law) for window in ("peak", "hold")}
 
 
 @measure("1", named([NINE["flat"]]), beside=True)
 def residual_of_eq_4_4(history, runs):
     """Root mean square over the energy's, of each of the nine surfaces by one fit."""
-    return {k: rms(f[SED] - f[SED_LAW]) / rms(f[SED]) for k, f in runs.once(_by_eq_4_4).items()}
+    return {k: rms(f[SED] - f[SED_LAW]) / rms(f[SED]) for k, f in _by_eq_4_4(runs).items()}
 
 
 @measure("1", named([NINE["flat"]]), beside=True)
@@ -449,12 +451,12 @@ def fall_by_eq_4_4(history, runs):
     """Relative fall in the hold of the energy by Eq 4-4, of each of the nine surfaces."""
     tops = {k: ramp_end(h) for k, h in _nine(runs).items()}
     return {
-        k: 1 - f[SED_LAW].iloc[-1] / f[SED_LAW].iloc[tops[k]]
-        for k, f in runs.once(_by_eq_4_4).items()
+        k: 1 - f[SED_LAW].iloc[-1] / f[SED_LAW].iloc[tops[k]] for k, f in _by_eq_4_4(runs).items()
     }
 
 
-def _by_eq_4_4(runs: Together) -> dict[str, pd.DataFrame]:
+@kept
+def _by_eq_4_4(runs: Histories) -> dict[str, pd.DataFrame]:
     surfaces = _nine(runs)
     law = fit_sum(surfaces.values(), RECEPTOR_DEPTH)
     return {k: energy_from_pressure(h, RECEPTOR_DEPTH, law) for k, h in surfaces.items()}

@@ -38,8 +38,9 @@ from cysyk1999.measures.responses import (
 from cysyk1999.measures.runs import NINE
 from cysyk1999.receptors.fits import r_squared, rms
 from fingerpad.measures import features
-from fingerpad.measures.features import PRESSURE, energy, profile
-from fingerpad.measures.measure import Measure, Together, measure, named, plates, waves, wavy
+from fingerpad.measures.features import PRESSURE, Histories, energy, profile
+from fingerpad.measures.kept import kept
+from fingerpad.measures.measure import Measure, measure, named, plates, waves, wavy
 from fingerpad.measures.skin import WINDOW, skin_curvatures
 from fingerpad.measures.strokes import (
     FULL,
@@ -228,7 +229,7 @@ def profile_shift(history, runs):
     return found
 
 
-def _lag(stroke: xr.Dataset, runs: Together) -> tuple[float, float]:
+def _lag(stroke: xr.Dataset, runs: Histories) -> tuple[float, float]:
     """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their
     correlation when shifted.
     """
@@ -286,20 +287,24 @@ def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]
     }
 
 
-def _law_at_560_um(runs: Together) -> ImpulseRate:
+@kept
+def _law_at_560_um(runs: Histories) -> ImpulseRate:
     """By the rule of `shallow_law`."""
-    return shallow_law({label: runs[scene] for label, scene in NINE.scenes.items()}, SHALLOW)[0]
+    return shallow_law({label: runs[scene] for label, scene in NINE.items()}, SHALLOW)[0]
 
 
-def _rate_at_560_um(stroke: xr.Dataset, runs: Together) -> np.ndarray:
-    return predicted_rate(stroke, SHALLOW, runs.once(_law_at_560_um))[IMPULSE_RATE].to_numpy()
+def _rate_at_560_um(stroke: xr.Dataset, runs: Histories) -> np.ndarray:
+    return predicted_rate(stroke, SHALLOW, _law_at_560_um(runs))[IMPULSE_RATE].to_numpy()
 
 
-def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndarray]:
+_stroke_law = kept(stroke_law)
+
+
+def _by_eq_4_4(history: xr.Dataset, runs: Histories) -> tuple[np.ndarray, np.ndarray]:
     """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the
     receptor.
     """
-    law, shift = runs.once(stroke_law)
+    law, shift = _stroke_law(runs)
     s = skin_sample(history, RECEPTOR_DEPTH)
     return s.energy, s.by(law, shift)
 
@@ -327,7 +332,7 @@ def histogram_bin(history):
 def highest_frequency(history, runs):
     """Largest mean frequency of a receptor at 560 um from 40 mm on, as Fig 5-23 shows it."""
     count = STROKES_SHOWN["5-23"]
-    rate, impulses = impulses_of(history, count, SHALLOW, runs.once(_law_at_560_um))
+    rate, impulses = impulses_of(history, count, SHALLOW, _law_at_560_um(runs))
     at = np.interp(np.arange(40, 80.01, 0.1), rate[DISTANCE], rate[TIME])
     return mean_frequency(impulses, count, at)[FREQUENCY].max()
 
@@ -352,7 +357,7 @@ def _passages(stroke: xr.Dataset) -> dict[str, np.ndarray]:
 @stroked("impulses", in_full, beside=True)
 def impulses_at_560_um(stroke, runs):
     """Mean number of impulses while each convexity passes."""
-    return _impulses(stroke, _passages(stroke), depth=SHALLOW, law=runs.once(_law_at_560_um))
+    return _impulses(stroke, _passages(stroke), depth=SHALLOW, law=_law_at_560_um(runs))
 
 
 def _in_hollows(stroke: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
@@ -492,7 +497,7 @@ TRACES = (
     Stroke(
         "receptor_shift",
         "mm",
-        lambda h, runs: 1e3 * runs.once(stroke_law)[1],
+        lambda h, runs: 1e3 * _stroke_law(runs)[1],
         named([FULL["10"]]),
         beside=True,
     ),

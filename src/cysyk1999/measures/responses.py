@@ -102,11 +102,12 @@ def strokes(histories: Histories) -> dict[str, xr.Dataset]:
     the slowest first.
     """
     scenes = {name: scene_of(history) for name, history in histories.items()}
-    found = [name for name, scene in scenes.items() if waves(scene)]
-    order = {
-        name: (-len(scenes[name].stimulus.curvatures), speed_of(scenes[name])) for name in found
-    }
-    return {name: histories[name] for name in sorted(found, key=order.get)}
+    waved = [name for name, scene in scenes.items() if waves(scene)]
+
+    def order(name: str) -> tuple[int, float]:
+        return -len(scenes[name].stimulus.curvatures), speed_of(scenes[name])
+
+    return {name: histories[name] for name in sorted(waved, key=order)}
 
 
 # -- pressure and strain energy --------------------------------------------------------------------
@@ -162,7 +163,7 @@ def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[Spa
 
     Raises KeyError if one of them was not simulated.
     """
-    law = fit_sum([histories[scene] for scene in NINE.scenes.values()], depth)
+    law = fit_sum([histories[scene] for scene in NINE.values()], depth)
     return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
 
 
@@ -174,14 +175,11 @@ def energy_from_pressure(
     shift: m, of the receptor to the side: a constant, or `skin_shift`.
     """
     sample = skin_sample(history, depth)
-    frame = pd.DataFrame(
-        {TIME: history["time"].values, SED: sample.energy, SED_LAW: sample.by(law, shift)}
-    )
-    return (
-        frame.assign(**{DISTANCE: history["stroke_distance"].values * 1e3})
-        if is_stroke(history)
-        else frame
-    )
+    time, by_law = history["time"].values, sample.by(law, shift)
+    frame = pd.DataFrame({TIME: time, SED: sample.energy, SED_LAW: by_law})
+    if is_stroke(history):
+        frame[DISTANCE] = history["stroke_distance"].values * 1e3
+    return frame
 
 
 # -- nodes in contact, for Eqs 4-1 to 4-3 ----------------------------------------------------------
@@ -219,41 +217,28 @@ def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame
     def at_places(values: np.ndarray) -> np.ndarray:
         return np.array([np.interp(x_rest, skin, row) for row in values])
 
-    everywhere, sunk = (
-        skin_at(history)[0][:, nodes],
-        -history["skin_displacement_y"].values[:, nodes],
-    )
+    everywhere = skin_at(history)[0][:, nodes]
+    sunk = -history["skin_displacement_y"].values[:, nodes]
     x, down, pressure = map(at_places, (everywhere, sunk, history[PRESSURE].values[:, nodes]))
     time, top = history["time"].values, ramp_end(history)
-    speed = np.concatenate(
-        [
-            np.gradient(down[: top + 1], time[: top + 1], axis=0),
-            np.gradient(down[top:], time[top:], axis=0)[1:],
-        ]
-    )
+    ramp, hold = (np.gradient(down[s], time[s], axis=0) for s in (slice(top + 1), slice(top, None)))
+    speed = np.concatenate([ramp, hold[1:]])
     edge = history["contact_width"].values / 2
-    at_edge = np.array(
-        [np.interp(e, row, d) for e, row, d in zip(edge, everywhere, sunk, strict=True)]
-    )
-    rows = []
-    for node in range(len(x_rest)):
-        on = np.flatnonzero((pressure[:, node] > 0) & (edge - x[:, node] >= NODE_SPACING))
-        rows.append(
-            pd.DataFrame(
-                {
-                    TIME: time[on],
-                    NODE: x_rest[node] * 1e3,
-                    P: pressure[on, node],
-                    EDGE_DISTANCE: (edge[on] - x[on, node]) * 1e3,
-                    BELOW_EDGE: (down[on, node] - at_edge[on]) * 1e3,
-                    NODE_SPEED: speed[on, node] * 1e3,
-                    CURVATURE: curvature_of(history),
-                    "ramp": on <= top,
-                    "past_peak": on >= pressure[:, node].argmax(),
-                }
-            )
-        )
-    return pd.concat([part for part in rows if len(part)], ignore_index=True)
+    at_edge = np.array([np.interp(*each) for each in zip(edge, everywhere, sunk, strict=True)])
+    on = (pressure > 0) & (edge[:, None] - x >= NODE_SPACING)
+    node, output = np.nonzero(on.T)  # every output of the first node, of the second, and so on
+    columns = {
+        TIME: time[output],
+        NODE: x_rest[node] * 1e3,
+        P: pressure[output, node],
+        EDGE_DISTANCE: (edge[output] - x[output, node]) * 1e3,
+        BELOW_EDGE: (down[output, node] - at_edge[output]) * 1e3,
+        NODE_SPEED: speed[output, node] * 1e3,
+        CURVATURE: curvature_of(history),
+        "ramp": output <= top,
+        "past_peak": output >= pressure.argmax(axis=0)[node],
+    }
+    return pd.DataFrame(columns)
 
 
 def terms_of(law: str, nodes: pd.DataFrame) -> np.ndarray:
@@ -314,11 +299,7 @@ def predicted_rate(
         a stroke the stroke distance too. The time of a kink between legs is there twice (see
         `fingerpad.receptors.laws.rate_by_leg`).
     """
-    return _rate_frame(history, energy(history, depth, offset), law)
-
-
-def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd.DataFrame:
-    time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
+    time, values, rate = _by_leg(history, energy(history, depth, offset))
     static, dynamic = law.terms(values, rate)
     columns = {
         TIME: time,
@@ -329,39 +310,23 @@ def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd
         IMPULSE_RATE: law(values, rate),
     }
     if is_stroke(history):
-        columns[DISTANCE] = (
-            np.interp(time, history["time"].values, history["stroke_distance"].values) * 1e3
-        )
+        slid = history["stroke_distance"].values * 1e3
+        columns[DISTANCE] = np.interp(time, history["time"].values, slid)
     return pd.DataFrame(columns)
 
 
-def rapidly_adapting_rate(
-    history: xr.Dataset, law: RapidlyAdapting, stimulus: str = "curvature", depth: float = 600e-6
-) -> pd.DataFrame:
-    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the
-    centre, or of strain energy.
+def _by_leg(history: xr.Dataset, values: np.ndarray) -> tuple[np.ndarray, ...]:
+    return rate_by_leg(history["time"].values, values, history["leg"].values)
 
-    Parameters
-    ----------
-    stimulus
-        "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at `depth`,
-        m).
+
+def rapidly_adapting_rate(history: xr.Dataset, law: RapidlyAdapting) -> pd.DataFrame:
+    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the
+    centre: columns time, curvature (1/m, of the deformed skin), its rate, and the impulse rate.
     """
-    values = (
-        skin_curvature(history, centre_node(history))
-        if stimulus == "curvature"
-        else energy(history, depth)
-    )
-    time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
-    unit = "1/m" if stimulus == "curvature" else "Pa"
-    return pd.DataFrame(
-        {
-            TIME: time,
-            f"{stimulus} ({unit})": values,
-            f"{stimulus}_rate ({unit}/s)": rate,
-            IMPULSE_RATE: law(rate),
-        }
-    )
+    values = skin_curvature(history, centre_node(history))
+    time, values, rate = _by_leg(history, values)
+    columns = {TIME: time, CURVATURE: values, "curvature_rate (1/m/s)": rate}
+    return pd.DataFrame({**columns, IMPULSE_RATE: law(rate)})
 
 
 def raster(
@@ -371,18 +336,14 @@ def raster(
     (from 1), time, stroke distance.
     """
     time = frame[TIME].to_numpy()
-    parts = [
-        pd.DataFrame({"trial": trial, TIME: train})
-        for trial, train in enumerate(
-            trains(time, frame[IMPULSE_RATE].to_numpy(), repetitions, seed, variation), start=1
-        )
-    ]
-    out = pd.concat(parts, ignore_index=True)
-    return (
-        out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])})
-        if DISTANCE in frame
-        else out
+    impulses = trains(time, frame[IMPULSE_RATE].to_numpy(), repetitions, seed, variation)
+    out = pd.concat(
+        [pd.DataFrame({"trial": k, TIME: train}) for k, train in enumerate(impulses, start=1)],
+        ignore_index=True,
     )
+    if DISTANCE in frame:
+        out[DISTANCE] = np.interp(out[TIME], time, frame[DISTANCE])
+    return out
 
 
 def impulses_of(
@@ -427,10 +388,8 @@ def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> 
     """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time,
     predicted_frequency.
     """
-    values = [
-        instantaneous_frequency(train[TIME].to_numpy(), at)
-        for _, train in impulses.groupby("trial")
-    ]
+    by_trial = impulses.groupby("trial")[TIME]
+    values = [instantaneous_frequency(train.to_numpy(), at) for _, train in by_trial]
     return pd.DataFrame({TIME: at, FREQUENCY: np.sum(values, axis=0) / repetitions})
 
 
@@ -502,15 +461,8 @@ def shallow_law(
         for z in (RECEPTOR_DEPTH, depth)
     )
     factor, law = float(deep / shallow), THESIS_RATE
-    return (
-        ImpulseRate(
-            law.per_energy * factor,
-            law.per_rate * factor,
-            law.threshold / factor,
-            law.rate_threshold / factor,
-        ),
-        factor,
-    )
+    thresholds = law.threshold / factor, law.rate_threshold / factor
+    return ImpulseRate(law.per_energy * factor, law.per_rate * factor, *thresholds), factor
 
 
 def straight_line(x, y) -> tuple[float, float, float]:
@@ -587,11 +539,8 @@ def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
     """A candidate stimulus (time) of a receptor at a depth (m) under the centre, or on the skin
     over it: see `CANDIDATES`.
     """
-    variable, _, _ = CANDIDATES[name]
-    values = history.variables[variable].values
-    if values.ndim == 2:
-        values = values[:, receptor_index(history, depth)]
-    return values
+    values = history.variables[CANDIDATES[name][0]].values
+    return values[:, receptor_index(history, depth)] if values.ndim == 2 else values
 
 
 CANDIDATES = {
@@ -603,11 +552,8 @@ CANDIDATES = {
     "compressive strain": ("compressive_strain", "1", True),
     "tensile strain": ("tensile_strain", "1", True),
     "von Mises stress": ("von_mises_stress", "Pa", True),
-    "hydrostatic pressure": (
-        "hydrostatic_pressure",
-        "Pa",
-        True,
-    ),  # and dilatation, which is a fixed multiple of it
+    # and dilatation, which is a fixed multiple of it
+    "hydrostatic pressure": ("hydrostatic_pressure", "Pa", True),
     "contact pressure, centre": ("centre_pressure", "Pa", False),
     "contact pressure, peak": ("peak_pressure", "Pa", False),
     "indentation depth": ("indentation_depth", "m", False),

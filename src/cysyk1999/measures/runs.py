@@ -24,8 +24,8 @@ WITHIN_350, WITHIN_400 = (
 
 
 @dataclass(frozen=True)
-class Runs:
-    """Scenes by name.
+class Runs(Mapping[str, str]):
+    """Scenes by name: a mapping of names to scenes.
 
     Attributes
     ----------

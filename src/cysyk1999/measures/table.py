@@ -10,23 +10,24 @@ another column is read.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from os import PathLike
 from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cysyk1999.measures import of_presses, of_scenes, of_strokes
-from cysyk1999.measures.errors import Companion, Companions, Errors, thinned
+from cysyk1999.measures.errors import Companions, Errors, thinned
 from cysyk1999.measures.inputs import read_results
 from fingerpad.files import write_atomically
 from fingerpad.measures.features import Feature, Histories, Meshes
-from fingerpad.measures.kept import Each
-from fingerpad.measures.measure import Measure, Together, measures_of
+from fingerpad.measures.kept import LazyMapping
+from fingerpad.measures.measure import Measure, measures_of
 from fingerpad.results import scene_of
 
 INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
@@ -75,12 +76,17 @@ class Measures:
     @classmethod
     def of(cls, histories: Histories, meshes: Meshes | None = None) -> Measures:
         """Read of histories and meshes, each number once, when it is asked for."""
-        runs, seen = Together(histories), {}
+        runs = LazyMapping(histories.__getitem__, histories)
 
+        @cache
         def find(quantity: str, scene: str) -> Mapping[str, float]:
-            if (quantity, scene) not in seen:
-                seen[quantity, scene] = read(MEASURES[quantity], scene, runs, meshes or {})
-            return seen[quantity, scene]
+            measure, history = MEASURES[quantity], runs[scene]
+            described = scene_of(history)
+            if not measure.where(described):
+                raise KeyError(f"{quantity} of {scene}")
+            if measure.of == "scene":
+                return measure(described)
+            return measure((meshes or {})[scene] if measure.of == "mesh" else history, runs)
 
         return cls(find)
 
@@ -89,35 +95,21 @@ class Measures:
         """Of a column of the measures table, ``value`` or one of `INSTEAD`; what has a value but
         nothing there is missing.
         """
-        rows = table[table[column].notna() | table["value"].isna()] if column != "value" else table
-        seen: dict[tuple[str, str], dict[str, float]] = {}
+        rows = table[table[column].notna() | table["value"].isna()]
+        known: dict[tuple[str, str], dict[str, float]] = {}
         for row in rows.itertuples(index=False):
-            seen.setdefault((row.quantity, row.scene), {})[row.condition] = getattr(row, column)
+            known.setdefault((row.quantity, row.scene), {})[row.condition] = getattr(row, column)
         scenes = set(rows["scene"])
 
         def find(quantity: str, scene: str) -> Mapping[str, float]:
-            if (quantity, scene) not in seen:
+            if (quantity, scene) not in known:
                 raise KeyError(scene if scene not in scenes else f"{quantity} of {scene}")
-            return seen[quantity, scene]
+            return known[quantity, scene]
 
         return cls(find)
 
 
-def read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[str, float]:
-    """A measure of a scene. Raises KeyError where the scene has none, or it was not simulated."""
-    history = runs[scene]
-    described = scene_of(history)
-    if not measure.where(described):
-        raise KeyError(f"{measure.name} of {scene}")
-    if measure.of == "scene":
-        return measure(described)
-    if measure.of == "mesh":
-        return measure(meshes[scene])
-    return measure(runs.strokes[scene] if measure.of == "stroke" else history, runs)
-
-
-@dataclass(frozen=True)
-class Instead:
+class Instead(NamedTuple):
     """Measures of what is simulated or read more coarsely, by the columns `INSTEAD`."""
 
     mesh: Measures
@@ -126,19 +118,34 @@ class Instead:
     sparse: Measures
 
     @classmethod
-    def of(cls, histories: Histories, coarse: Companions) -> Instead:
-        """Read of histories and their companions when first asked for."""
-        own, mesh, *others = map(Measures.of, (histories, *_instead(histories, coarse)))
+    def of(cls, histories: Histories, coarse: Companions, own: Measures | None = None) -> Instead:
+        """Read of histories and their companions when first asked for; own: of the histories."""
+        own = own or Measures.of(histories)
 
-        def find(quantity: str, scene: str) -> Mapping[str, float]:
-            return _coarser(
-                coarse[scene],
-                histories[scene],
-                own.find(quantity, scene),
-                mesh.find(quantity, scene),
-            )
+        def on_another_mesh(scene: str) -> xr.Dataset:
+            if (other := coarse[scene].apart(histories[scene])) is None:
+                raise KeyError(scene)
+            return other
 
-        return cls(Measures(find), *others)
+        def numbers(read: Callable[[str], xr.Dataset], scenes: Iterable[str]) -> Measures:
+            return Measures.of(LazyMapping(read, scenes))
+
+        mesh = numbers(on_another_mesh, coarse)
+
+        def half_as_coarse(quantity: str, scene: str) -> Mapping[str, float]:
+            fine = own.find(quantity, scene)
+            return {
+                at: coarse[scene].number(histories[scene], fine[at], value)
+                for at, value in mesh.find(quantity, scene).items()
+                if at in fine
+            }
+
+        return cls(
+            Measures(half_as_coarse),
+            numbers(lambda scene: coarse[scene].sparse, coarse),
+            numbers(lambda scene: coarse[scene].both, coarse),
+            numbers(lambda scene: thinned(histories[scene]), histories),
+        )
 
     @classmethod
     def in_table(cls, table: pd.DataFrame) -> Instead:
@@ -147,81 +154,47 @@ class Instead:
 
     def errors(self, number: Callable[[Measures], float], value: float) -> Errors:
         """The errors of a number that is made of measures, in its unit."""
-        each = (self.mesh, self.sparse_mesh, self.both, self.sparse)
-        mesh, sparse_mesh, both, sparse = (_number(number, measures) for measures in each)
+
+        def known(measures: Measures) -> float:
+            try:
+                return number(measures)
+            except KeyError:
+                return np.nan
+
+        mesh, sparse_mesh, both, sparse = map(known, self)
         return Errors.left(abs(value - mesh), abs(sparse_mesh - both), abs(value - sparse))
-
-
-def _number(number: Callable[[Measures], float], measures: Measures) -> float:
-    try:
-        return number(measures)
-    except KeyError:
-        return float("nan")
-
-
-def _coarser(
-    companion: Companion, history: xr.Dataset, own: Mapping[str, float], other: Mapping[str, float]
-) -> dict[str, float]:
-    """A measure on a mesh with edges half as long again, of what it is on the run's own and on its
-    companion's.
-    """
-    return {
-        at: companion.number(history, own[at], value) for at, value in other.items() if at in own
-    }
-
-
-def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
-    def on_another_mesh(scene: str) -> xr.Dataset:
-        if (found := coarse[scene].apart(histories[scene])) is None:
-            raise KeyError(scene)
-        return found
-
-    return (
-        Each(on_another_mesh, coarse),
-        Each(lambda scene: coarse[scene].sparse, coarse),
-        Each(lambda scene: coarse[scene].both, coarse),
-        Each(lambda scene: thinned(histories[scene]), histories),
-    )
 
 
 def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> pd.DataFrame:
     """Every measure of every scene, columns `COLUMNS`; empty where nothing was simulated on a
     coarser mesh, or that shows it.
     """
-    fine, others, rows = (
-        Together(histories),
-        [Together(each) for each in _instead(histories, coarse)],
-        [],
-    )
+    fine, rows = Measures.of(histories, meshes), []
+    others = Instead.of(histories, coarse, fine)
     for scene in histories:
-        for measure in MEASURES.values():
-            values = _read(measure, scene, fine, meshes)
-            solved = measure.of in ("history", "stroke") and values
-            found = [
-                _read(measure, scene, runs, {}, said=False) if solved else {} for runs in others
-            ]
-            if found[0]:
-                found[0] = _coarser(coarse[scene], histories[scene], values, found[0])
-            for condition, value in values.items():
-                instead = (each.get(condition, np.nan) for each in found)
-                rows.append((scene, measure.name, condition, measure.unit, value, *instead))
+        for name, measure in MEASURES.items():
+            values = _known(fine, name, scene, told=True)
+            solved = values and measure.of in ("history", "stroke")
+            replaced = [_known(each, name, scene) if solved else {} for each in others]
+            for at, value in values.items():
+                instead = (found.get(at, np.nan) for found in replaced)
+                rows.append((scene, name, at, measure.unit, value, *instead))
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _read(
-    measure: Measure, scene: str, runs: Together, meshes: Meshes, said: bool = True
-) -> dict[str, float]:
+def _known(
+    measures: Measures, quantity: str, scene: str, told: bool = False
+) -> Mapping[str, float]:
+    """A measure of a scene; nothing where it has none. A scene unlike the thesis's that breaks one
+    must not cost all tables: that is `told` in a warning.
+    """
     try:
-        return read(measure, scene, runs, meshes)
+        return measures.find(quantity, scene)
     except KeyError:
         return {}
-    except (
-        ValueError,
-        IndexError,
-        ZeroDivisionError,
-    ) as error:  # a scene unlike the thesis's must not cost all tables
-        if said:
-            warnings.warn(f"measure {measure.name} is left out of {scene}: {error}", stacklevel=2)
+    except (ValueError, IndexError, ZeroDivisionError) as error:
+        if told:
+            warnings.warn(f"measure {quantity} is left out of {scene}: {error}", stacklevel=2)
         return {}
 
 
@@ -232,11 +205,9 @@ def write_measures(table: pd.DataFrame, path: str | PathLike) -> None:
 
 def read_measures(path: str | PathLike) -> pd.DataFrame:
     """The table that `write_measures` wrote."""
-    table = pd.read_csv(path, dtype=str, keep_default_na=False)
-    numbers = {
-        column: [float(v) if v else np.nan for v in table[column]] for column in ("value", *INSTEAD)
-    }
-    return table.assign(**numbers)
+    empty = dict.fromkeys(("value", *INSTEAD), [""])
+    kinds = {"condition": str} | dict.fromkeys(empty, float)
+    return pd.read_csv(path, dtype=kinds, keep_default_na=False, na_values=empty)
 
 
 def measure(job: SimpleNamespace) -> None:

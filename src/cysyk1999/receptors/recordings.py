@@ -11,7 +11,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from cysyk1999.reference_data import Column, ReferenceDataError, read_table
+from cysyk1999.reference_data import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    TEXT,
+    ReferenceDataError,
+    one_of,
+    read_table,
+)
 
 STIMULI = ("flat plate", "cylinder", "sphere", "wavy surface")
 WINDOWS = ("peak", "hold", "steady", "first second", "first 200 ms", "burst")
@@ -21,21 +28,21 @@ mean while a convexity of a stroked surface passes.
 """
 
 RATES = {
-    "recording": Column(text=True),
-    "receptor": Column(words=("SA-I", "RA")),
-    "species": Column(words=("human", "monkey", "model")),
-    "stimulus": Column(words=STIMULI),
-    "curvature_per_m": Column(least=0.0),
-    "or_curvature_per_m": Column(least=0.0, optional=True),
-    "force_gf": Column(above=0.0),
-    "ramp_gf_per_s": Column(above=0.0, optional=True),
-    "speed_mm_per_s": Column(least=0.0),
-    "window": Column(words=WINDOWS),
-    "rate_per_s": Column(least=0.0),
-    "sd_per_s": Column(least=0.0, optional=True),
-    "burst_width_mm": Column(above=0.0, optional=True),
-    "source": Column(text=True),
-    "how_obtained": Column(text=True),
+    "recording": TEXT,
+    "receptor": one_of("SA-I", "RA"),
+    "species": one_of("human", "monkey", "model"),
+    "stimulus": one_of(*STIMULI),
+    "curvature_per_m": NOT_NEGATIVE,
+    "or_curvature_per_m": NOT_NEGATIVE.or_nothing,
+    "force_gf": POSITIVE,
+    "ramp_gf_per_s": POSITIVE.or_nothing,
+    "speed_mm_per_s": NOT_NEGATIVE,
+    "window": one_of(*WINDOWS),
+    "rate_per_s": NOT_NEGATIVE,
+    "sd_per_s": NOT_NEGATIVE.or_nothing,
+    "burst_width_mm": POSITIVE.or_nothing,
+    "source": TEXT,
+    "how_obtained": TEXT,
 }
 """Columns of a file of impulse rates, units in the names. A recording is one receptor, or the mean
 of some, under one protocol. ``or_curvature_per_m`` is for a rate whose surface is one of two;

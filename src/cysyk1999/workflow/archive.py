@@ -43,6 +43,16 @@ PROFILES = (
 LICENSE = "https://spdx.org/licenses/GPL-3.0-or-later"
 SKIPPED = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.pyc")
 
+COSTS = {
+    "wall time (s)": "wall_s",
+    "process time (s)": "cpu_s",
+    "memory (MB)": "peak_rss_MB",
+    "nodes (1)": "nodes",
+    "steps (1)": "steps",
+    "iterations (1)": "newton_iterations",
+}
+"""Columns of ``costs.csv`` for a scene, and the keys of its summary."""
+
 Finished = list[tuple[Job, Mapping]]
 """Jobs with Snakemake's record of each."""
 
@@ -124,17 +134,8 @@ def costs(finished: Finished) -> pd.DataFrame:
         for path in map(Path, job.made):
             if path.name == "summary.json":
                 run = json.loads(path.read_text(encoding="utf-8"))["run"]
-                row = {
-                    "job": job.name,
-                    "scene": "/".join(path.parts[-3:-1]),
-                    "wall time (s)": run["wall_s"],
-                    "process time (s)": run["cpu_s"],
-                    "memory (MB)": run["peak_rss_MB"],
-                    "nodes (1)": run["nodes"],
-                    "steps (1)": run["steps"],
-                    "iterations (1)": run["newton_iterations"],
-                }
-                rows.append(row)
+                scene = {"job": job.name, "scene": "/".join(path.parts[-3:-1])}
+                rows.append(scene | {column: run[key] for column, key in COSTS.items()})
     return pd.DataFrame(rows)
 
 
@@ -182,12 +183,8 @@ def _crate(file: str, finished: Finished, results: str, folder: Path) -> ROCrate
     config = (p for p in (folder / "config").rglob("*") if p.is_file())
     inputs = sorted(path.relative_to(folder).as_posix() for path in config)
     outputs = list(dict.fromkeys(home(path) for job, _ in finished for path in job.made))
-    for path in (
-        *inputs,
-        *filter(lambda p: (folder / p).exists(), (*CODE, *ABOUT)),
-        *outputs,
-        "costs.csv",
-    ):
+    copied = [path for path in (*CODE, *ABOUT) if (folder / path).exists()]
+    for path in (*inputs, *copied, *outputs, "costs.csv"):
         add(path)
 
     def action(

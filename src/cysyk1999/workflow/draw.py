@@ -15,7 +15,7 @@ from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.table import Instead, Measures
 from cysyk1999.publishing.write import publish
 from cysyk1999.reference_data import read_reference
-from fingerpad.measures.kept import Each
+from fingerpad.measures.kept import LazyMapping
 
 
 def draw_figures(job: SimpleNamespace) -> None:
@@ -36,9 +36,10 @@ def with_statement(spec, frame, results, reference):
     scenes.
     """
     histories, meshes, coarse = (
-        Each(found.__getitem__, filter(found.__contains__, spec.needs)) for found in results
+        LazyMapping(found.__getitem__, filter(found.__contains__, spec.needs)) for found in results
     )
-    measures, coarser = Measures.of(histories, meshes), Instead.of(histories, coarse)
+    measures = Measures.of(histories, meshes)
+    coarser = Instead.of(histories, coarse, measures)
     statement = said(spec.number, measures, coarser, reference)
     if statement is None:
         return frame

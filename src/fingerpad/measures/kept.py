@@ -1,4 +1,4 @@
-"""What is computed from a history once: results kept as long as the history, and lazy mappings."""
+"""What is computed once: results kept as long as their history or histories, and lazy mappings."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
-import xarray as xr
-
+Source = TypeVar("Source")
 Options = ParamSpec("Options")
 Result = TypeVar("Result")
 
 
 def kept(
-    function: Callable[Concatenate[xr.Dataset, Options], Result],
-) -> Callable[Concatenate[xr.Dataset, Options], Result]:
-    """Decorator: a function of a history is called once for each history and its other arguments.
+    function: Callable[Concatenate[Source, Options], Result],
+) -> Callable[Concatenate[Source, Options], Result]:
+    """Decorator: a function of a history, or of a `LazyMapping` of histories, is called once for
+    each of them and its other arguments.
 
     The result is dropped with the history. Neither of the two may be changed.
     """
     results: dict[tuple, Result] = {}
 
     @wraps(function)
-    def cached(history: xr.Dataset, *options: Options.args, **named: Options.kwargs) -> Result:
+    def cached(history: Source, *options: Options.args, **named: Options.kwargs) -> Result:
         key = (id(history), options, tuple(named.items()))
         if key not in results:
             result = function(history, *options, **named)
@@ -58,7 +58,3 @@ class LazyMapping(Mapping):
 
     def __len__(self) -> int:
         return len(self._names)
-
-
-Each = LazyMapping
-"""Its old name."""

@@ -8,54 +8,20 @@ is a result.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, Literal
+from typing import Literal
 
 import xarray as xr
 
-from fingerpad.measures.kept import LazyMapping
+from fingerpad.measures.features import Histories
 from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import PadMesh
 
 Values = Mapping[str, float]
 """Condition -> value; the condition of a single number is empty."""
-
-
-class Runs(Mapping):
-    """Histories of many scenes by name; of strokes also their `loaded` outputs, made once."""
-
-    def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
-        self._histories = histories
-        self.strokes = LazyMapping(lambda scene: loaded(histories[scene]), histories)
-        self._results: dict[Callable, Any] = {}
-
-    def __getitem__(self, scene: str) -> xr.Dataset:
-        return self._histories[scene]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._histories)
-
-    def __len__(self) -> int:
-        return len(self._histories)
-
-    def once(self, function: Callable[[Runs], Any]) -> Any:
-        """``function(self)``, called when first asked for.
-
-        Raises
-        ------
-        KeyError
-            Each time, if a scene was not simulated.
-        """
-        if function not in self._results:
-            self._results[function] = function(self)
-        return self._results[function]
-
-
-Together = Runs
-"""Its old name."""
 
 
 def anywhere(scene: Scene) -> bool:
@@ -78,7 +44,7 @@ class Measure:
     of
         What `read` takes; of a stroke its `loaded` outputs.
     beside
-        Whether `read` takes, as second argument, all histories, as `Runs`.
+        Whether `read` takes, as second argument, all histories by scene.
     """
 
     name: str
@@ -89,7 +55,7 @@ class Measure:
     beside: bool = False
 
     def __call__(
-        self, subject: Scene | PadMesh | xr.Dataset, runs: Runs | None = None
+        self, subject: Scene | PadMesh | xr.Dataset, runs: Histories | None = None
     ) -> dict[str, float]:
         subject = loaded(subject) if self.of == "stroke" else subject
         found = self.read(subject, runs) if self.beside else self.read(subject)

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from cysyk1999.reference_data import Column, ReferenceDataError, read_table
+from cysyk1999.reference_data import NUMBER, POSITIVE, TEXT, ReferenceDataError, one_of, read_table
 from cysyk1999.studies.reconstruction import pads
 
 EVIDENCE = Path("config/reference/reconstruction_evidence.csv")
@@ -35,20 +35,20 @@ SEEN = 1.02
 """Least ratio of a pressure to another by which a picture tells that it is larger."""
 SURFACES = (pads.PLATE, *pads.SURFACES, *(f"{k}{pads.FAST}" for k in pads.SURFACES))
 COLUMNS = {
-    "id": Column(text=True),
-    "figure": Column(text=True),
-    "page": Column(above=0.0),
-    "surface": Column(words=SURFACES),
-    "measure": Column(words=(*pads.MEASURES, *pads.FORCES)),
-    "factor": Column(above=0.0),
-    "low": Column(),
-    "high": Column(),
-    "unit": Column(words=("N", "mm", "Pa", "Pa/s", "1")),
-    "tolerance": Column(above=0.0),
-    "role": Column(words=ROLES),
-    "family": Column(words=FAMILIES),
-    "reading": Column(text=True),
-    "thesis_ids": Column(text=True),
+    "id": TEXT,
+    "figure": TEXT,
+    "page": POSITIVE,
+    "surface": one_of(*SURFACES),
+    "measure": one_of(*pads.MEASURES, *pads.FORCES),
+    "factor": POSITIVE,
+    "low": NUMBER,
+    "high": NUMBER,
+    "unit": one_of("N", "mm", "Pa", "Pa/s", "1"),
+    "tolerance": POSITIVE,
+    "role": one_of(*ROLES),
+    "family": one_of(*FAMILIES),
+    "reading": TEXT,
+    "thesis_ids": TEXT,
 }
 """factor: what a simulated number is multiplied by to be what the thesis shows. tolerance: one
 standard deviation beyond an end. thesis_ids: rows of ``thesis_numbers.csv`` that say the same.

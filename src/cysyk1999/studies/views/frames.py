@@ -239,7 +239,7 @@ def adaptation(histories: Histories) -> pd.DataFrame:
         parts[f"force {ramp} gf/s"] = force_over_time(history)
         rates = {
             "slowly adapting": predicted_rate(history),
-            "rapidly adapting": rapidly_adapting_rate(history, RAPIDLY_ADAPTING, "curvature"),
+            "rapidly adapting": rapidly_adapting_rate(history, RAPIDLY_ADAPTING),
         }
         for kind, rate in rates.items():
             ticks = raster(rate, 5, SEED).rename(columns={TIME: IMPULSE, "trial": "trial (1)"})
