@@ -18,7 +18,7 @@ pytestmark = pytest.mark.unit
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMAS = ROOT / "workflow" / "schemas"
-CASES = ("accuracy", "effects", "stability")
+CASES = ("accuracy", "effects", "explanations", "stability")
 """Folders of studies' cases, whose scenes are checked when they are read."""
 YAML_FILES = sorted(
     path for path in (ROOT / "config").rglob("*.yaml") if path.parent.name not in CASES

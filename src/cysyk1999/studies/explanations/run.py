@@ -92,11 +92,9 @@ class Reading:
 
 
 CONTROL, PUBLISHED = "as it is", "as published"
-FILE = "config/explanations.yaml"
-READINGS = {
-    name: Reading(**fields)
-    for name, fields in yaml.safe_load((CONFIG / "explanations.yaml").read_text("utf-8")).items()
-}
+FILE = "config/explanations/readings.yaml"
+_written = yaml.safe_load((CONFIG.parent / FILE).read_text("utf-8"))
+READINGS = {name: Reading(**fields) for name, fields in _written.items()}
 """What the thesis leaves open, by name; and the controls."""
 READ_ONLY = tuple(
     name
