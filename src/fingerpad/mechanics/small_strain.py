@@ -6,6 +6,7 @@ v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta times the deviatoric stre
 """
 
 import numpy as np
+from scipy.sparse import eye
 
 from fingerpad.laws import Assigned
 from fingerpad.mechanics.finite_strain import FiniteStrainBody, everywhere_neo_hooke
@@ -38,13 +39,15 @@ class SmallStrainBody:
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
         self._last = self.u.copy()
         self.factor, self.branch_work = 1.0, 0.0
-        unsupported = np.zeros_like(space.fixed)
-        everywhere = Space(
-            space.points, space.cells, space.element.kind, unsupported, space.element.name
-        )
+        # with nothing prescribed but nodes that belong to no element
+        alone = np.ones_like(space.fixed)
+        alone[space.cells] = False
+        everywhere = Space(space.points, space.cells, space.element.kind, alone, space.element.name)
+        pick = eye(alone.size, format="csr")[~alone.ravel()]
         self._free, self._rates = self._tangents(space)
-        self._deviatoric, self._volumetric = map(
-            everywhere.pattern.matrix, self._tangents(everywhere)[0]
+        self._deviatoric, self._volumetric = (
+            pick.T @ everywhere.pattern.matrix(data) @ pick
+            for data in self._tangents(everywhere)[0]
         )
         self._factored: tuple | None = None
         self._history = np.zeros_like(self.u)
