@@ -108,7 +108,7 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_tables_and_his
     assert {
         "figures/studies/animation_stroke_10.gif",
         "figures/studies/calibration_fit.png",
-        "figures/studies/ridges_outer.png",
+        "figures/studies/ridges_offset.png",
         "figures/studies/scorecard.csv",
         "results/thesis/specimens",
         "results/thesis/pdf/fig_4-10.pdf",

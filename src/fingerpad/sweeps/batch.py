@@ -15,8 +15,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from fingerpad.measures.kept import LazyMapping
 from fingerpad.measures.known import known
-from fingerpad.measures.measure import Runs
 from fingerpad.planning.plan import plan
 from fingerpad.results import states_found, write_history
 from fingerpad.scenes.scene import Scene, scene_of_record
@@ -104,7 +104,8 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     """
     history = simulate(scene, plan=plan(scene))
     cost = json.loads(history.attrs["cost"])
-    values, runs, measures = [], Runs({scene.name: history}), known(keep)
+    runs = LazyMapping(lambda name: history, [scene.name])
+    values, measures = [], known(keep)
     for name in keep:
         measure = measures[name]
         if measure.where(scene):
