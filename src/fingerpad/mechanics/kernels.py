@@ -83,13 +83,13 @@ def _isochoric_factor(jac):
     return factor
 
 
-@njit(**_INLINE)
+@register_jitable(**_INLINE)
 def _four(values, q, k):
     """Components 11, 12, 21, 22 at a point of an element."""
     return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
 
 
-@njit(**_INLINE)
+@register_jitable(**_INLINE)
 def _spring(f, stress):
     """tau : tau of the pushed-forward deviatoric stress (11, 22, 12, 33) of a branch."""
     f11, f12, f21, f22 = f
@@ -153,7 +153,7 @@ def exchanged(compliance, share, on, stick, out):
             out[touching + c, touching + r] = tangential[points + stick[r]]
 
 
-@njit(**_INLINE)
+@register_jitable(**_INLINE)
 def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     """Add the upper triangle of the product left right to ``data``, from its ``n``-th place on.
 
@@ -198,7 +198,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
-    inline = njit(**_INLINE)
+    inline = register_jitable(**_INLINE)
 
     @inline
     def deform(u, mesh, block, first, last, local, drawn, f):
