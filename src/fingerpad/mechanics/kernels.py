@@ -153,7 +153,7 @@ def exchanged(compliance, share, on, stick, out):
             out[touching + c, touching + r] = tangential[points + stick[r]]
 
 
-@register_jitable(**_INLINE)
+@njit(**_INLINE)
 def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     """Add the upper triangle of the product left right to ``data``, from its ``n``-th place on.
 
