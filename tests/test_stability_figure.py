@@ -50,7 +50,7 @@ def frame():
 
 
 def test_shares_of_the_limits(frame):
-    share = long(frame).set_index(["case", "method", "measure"])["share"]
+    share = long(frame).set_index(["case", "method", "measure"])["share"].sort_index()
     assert share["a", "default", "energy"] == pytest.approx(0.1)
     assert share["a", "default", "det_f"] == pytest.approx(0.2)
     assert share["a", "default", "completed"] == 0 and share["b", "default", "completed"] == np.inf

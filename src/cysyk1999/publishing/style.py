@@ -160,11 +160,6 @@ MEANINGS: Mapping[str, Mapping[str, Look]] = {
         ("#0072b2", "#0072b2", "#0072b2", "#d55e00", "#d55e00", "#737373"),
         (SOLID,),
     ),
-    "origin": _looks(
-        ("stated", "inferred", "assumed"),
-        ("#0072b2", "#7a6000", "#d55e00"),
-        (SOLID, DASHED, DOTTED),
-    ),
 }
 """What is told apart -> its values, and how each looks. A test measures contrasts and distances,
 colour-blind ones too.
