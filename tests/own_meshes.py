@@ -80,3 +80,23 @@ def areas(mesh):
 def places(points):
     """Points (n, 2), or rows of numbers, as a set."""
     return set(map(tuple, points.tolist()))
+
+
+def linear(mesh):
+    curves = {name: facets[:, :2] for name, facets in mesh.curves.items()}
+    return compact(replace(mesh, cells=mesh.cells[:, :4], element="quad4", curves=curves))
+
+
+def split(mesh, element, *orders):
+    """Every quad as triangles of so many of its nodes."""
+    cells = np.concatenate([mesh.cells[:, order] for order in orders])
+    region = np.tile(mesh.region, len(orders))
+    return replace(mesh, cells=cells, element=element, region=region, symmetric=False)
+
+
+def triangles(mesh):
+    return split(mesh, "tri6", [0, 1, 2, 4, 5, 8], [0, 2, 3, 8, 6, 7])
+
+
+def linear_triangles(mesh):
+    return split(linear(mesh), "tri3", [0, 1, 2], [0, 2, 3])

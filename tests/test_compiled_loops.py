@@ -5,6 +5,7 @@ import subprocess
 import sys
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from numba import njit
@@ -12,6 +13,8 @@ from numba import njit
 from fingerpad import compiled
 from fingerpad.laws import LAWS, NEO_HOOKE
 from fingerpad.mechanics import kernels
+from fingerpad.specimen import write_pad
+from own_meshes import slab_mesh, split
 
 pytestmark = pytest.mark.unit
 
@@ -30,24 +33,55 @@ def test_compiling_is_shown_and_counted_once(monkeypatch):
     assert len(shown) == 1 and "compiling loops" in shown[0]
 
 
-def test_a_second_process_takes_what_the_first_compiled(tmp_path):
-    code = """if True:
+@pytest.fixture
+def slabs(tmp_path):
+    """One slab of linear quads, and of linear triangles."""
+    mesh = slab_mesh(0.5e-3)
+    write_pad(mesh, tmp_path / "quads.msh")
+    write_pad(split(mesh, "tri3", [0, 1, 2], [0, 2, 3]), tmp_path / "triangles.msh")
+    return tmp_path
+
+
+def simulated(folder, *slabs):
+    """Contact widths (m) of a press on each slab, and whether loops were compiled, in a process of its
+    own that keeps loops in ``folder``.
+    """
+    code = f"""if True:
         import fingerpad
         from fingerpad.compiled import compiling
-        motion = [{"press_to_depth": "0.2 mm", "speed": "1 mm/s"}]
-        fingerpad.simulate(
-            {"stimulus": {"shape": "flat"}, "motion": motion, "accuracy": {"skin_edge": "0.8 mm"}}
-        )
+        from own_meshes import SLAB
+        for name in {slabs}:
+            print(float(fingerpad.simulate(SLAB(name)).contact_width[-1]))
         print(compiling() > 0.0)
     """
-    for compiles in ("True", "False"):
-        done = subprocess.run(
-            [sys.executable, "-c", code],
-            capture_output=True,
-            text=True,
-            env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
-        )
-        assert done.stdout.strip() == compiles, done.stderr
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        # names of helpers depend on the order of a set: here it is the same in all processes
+        env=os.environ
+        | {
+            "NUMBA_CACHE_DIR": str(folder / "loops"),
+            "PYTHONPATH": str(Path(__file__).parent),
+            "PYTHONHASHSEED": "0",
+        },
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+def test_a_process_takes_what_others_compiled_and_mixes_nothing_up(slabs):
+    """Helpers of two elements, compiled by two processes, once had one name: a third process, which
+    took both, ran those of the first for both and crashed.
+    """
+    quads, triangles = "quads.msh", "triangles.msh"
+    (of_quads, compiled), (of_triangles, again) = (
+        simulated(slabs, name) for name in (quads, triangles)
+    )
+    assert (compiled, again) == ("True", "True")
+    assert simulated(slabs, quads, triangles) == [of_quads, of_triangles, "False"]
+    assert simulated(slabs, triangles, quads) == [of_triangles, of_quads, "False"]
 
 
 def test_where_nothing_can_be_kept_loops_are_still_compiled(monkeypatch):

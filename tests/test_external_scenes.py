@@ -1,7 +1,6 @@
 """Meshes from elsewhere go the same way as the built one and give the same answer."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,32 +16,12 @@ from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.plan import companion
 from fingerpad.results import summary
 from fingerpad.specimen import PadMesh, build_pad_mesh, write_pad
-from own_meshes import compact
+from own_meshes import linear, linear_triangles, triangles
 
 pytestmark = pytest.mark.unit
 
 SCENES = Path(__file__).parents[1] / "config" / "scenes"
 CYLINDER = {"shape": "cylinder", "curvature": "209.97 1/m"}
-
-
-def linear(mesh):
-    curves = {name: facets[:, :2] for name, facets in mesh.curves.items()}
-    return compact(replace(mesh, cells=mesh.cells[:, :4], element="quad4", curves=curves))
-
-
-def split(mesh, element, *orders):
-    """Every quad as triangles of so many of its nodes."""
-    cells = np.concatenate([mesh.cells[:, order] for order in orders])
-    region = np.tile(mesh.region, len(orders))
-    return replace(mesh, cells=cells, element=element, region=region, symmetric=False)
-
-
-def triangles(mesh):
-    return split(mesh, "tri6", [0, 1, 2, 4, 5, 8], [0, 2, 3, 8, 6, 7])
-
-
-def linear_triangles(mesh):
-    return split(linear(mesh), "tri3", [0, 1, 2], [0, 2, 3])
 
 
 @pytest.fixture(scope="module")

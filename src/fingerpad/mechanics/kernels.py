@@ -39,7 +39,7 @@ from fingerpad.laws import Law
 from fingerpad.laws.law import isochoric
 
 _JIT = JIT | {"fastmath": {"contract", "nsz", "reassoc", "arcp"}}
-_INLINE = _JIT | {"inline": "always", "cache": False}
+_HELPER = _JIT | {"cache": False}
 
 _LANES = 8
 """Numbers that a processor's vector may hold: rows are filled up with zeros to a multiple of it."""
@@ -67,7 +67,7 @@ most.
 """
 
 
-@overload(isochoric, jit_options=_JIT | {"cache": False}, inline="always")
+@overload(isochoric, jit_options=_HELPER)
 def _isochoric_factor(jac):
     """J^(-2/3) from its exponent, by two steps of fourth order: to two units in the last place, at
     a tenth of a power's cost.
@@ -83,13 +83,13 @@ def _isochoric_factor(jac):
     return factor
 
 
-@register_jitable(**_INLINE)
+@register_jitable(**_HELPER)
 def _four(values, q, k):
     """Components 11, 12, 21, 22 at a point of an element."""
     return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
 
 
-@register_jitable(**_INLINE)
+@register_jitable(**_HELPER)
 def _spring(f, stress):
     """tau : tau of the pushed-forward deviatoric stress (11, 22, 12, 33) of a branch."""
     f11, f12, f21, f22 = f
@@ -153,7 +153,7 @@ def exchanged(compliance, share, on, stick, out):
             out[touching + c, touching + r] = tangential[points + stick[r]]
 
 
-@njit(**_INLINE)
+@njit(**_HELPER)
 def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     """Add the upper triangle of the product left right to ``data``, from its ``n``-th place on.
 
@@ -171,16 +171,14 @@ def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     return n
 
 
-def _compiled(loop: Callable, law: Law, *sizes: int):
-    """A loop, compiled for a law and the sizes of an element.
+def _named(function: Callable, *parts) -> Callable:
+    """The function, with its name followed by what is compiled into it.
 
-    Its cache file is named after both and the law's source: processes that compile different ones
-    at once keep apart, and an edited law is compiled again. The loops of a law from outside this
-    package, whose helpers are not known, are not kept.
+    Numba names cache files and symbols after it: loops of another law or element, compiled by
+    another process, must not be taken for these.
     """
-    loop.__qualname__ += "".join(f"-{part}" for part in (law.name, law.source[:16], *sizes))
-    kept = _JIT["cache"] and law.stress.__module__.startswith("fingerpad.")
-    return njit(**_JIT | {"cache": kept})(loop)
+    function.__qualname__ += "".join(f"_{part}" for part in parts)
+    return function
 
 
 @cache
@@ -196,11 +194,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     """
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
-        register_jitable(inline="always")(formula)
+        register_jitable(**_HELPER)(formula)
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
-    inline = register_jitable(**_INLINE)
 
-    @inline
+    def helper(function):
+        return register_jitable(**_HELPER)(_named(function, nodes, points, modes))
+
+    @helper
     def deform(u, mesh, block, first, last, local, drawn, f):
         """Deformation gradient 11, 12, 21, 22 and its determinant at the points of elements of a
         block, into ``f`` (5, nq, ...). Returns the smallest determinant.
@@ -233,7 +233,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             smallest = min(smallest, low)
         return smallest
 
-    @inline
+    @helper
     def project(mesh, block, first, last, f, volume, dilatation, theta, lag):
         """Dilatation modes of ``f`` into ``theta`` (nm, ...) and ``volume`` (ne, nm); those of
         ``dilatation`` (ne, nm), which may be the same array, into ``lag`` (nm, ...).
@@ -251,7 +251,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             for k in range(first, last):
                 lag[m, k] = dilatation[start + k, m]
 
-    @inline
+    @helper
     def to_nodes(reference, first, last, drawn, local):
         """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
         ``local`` (2, nen, ...).
@@ -264,7 +264,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         total += drawn[i, c, k] * reference[a, c]
                     local[i, a, k] = total
 
-    @inline
+    @helper
     def add(cells, start, first, last, local, force):
         """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
         for k in range(first, last):
@@ -573,6 +573,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return network, springs
 
     every = (assemble_tangent, internal_force, commit, energies)
-    return SimpleNamespace(
-        **{loop.__name__: _compiled(loop, law, nodes, points, modes) for loop in every}
-    )
+    # An edited law is compiled again; helpers of a law from outside this package are not known.
+    kept = _JIT["cache"] and law.stress.__module__.startswith("fingerpad.")
+    compiled = njit(**_JIT | {"cache": kept})
+    sizes = law.name, law.source[:16], nodes, points, modes
+    return SimpleNamespace(**{loop.__name__: compiled(_named(loop, *sizes)) for loop in every})
