@@ -43,8 +43,8 @@ def slabs(tmp_path):
 
 
 def simulated(folder, *slabs):
-    """Contact widths (m) of a press on each slab, and whether loops were compiled, in a process of its
-    own that keeps loops in ``folder``.
+    """Contact widths (m) of a press on each slab, and whether loops were compiled: in a process of
+    its own, which keeps loops in ``folder``.
     """
     code = f"""if True:
         import fingerpad
