@@ -18,30 +18,36 @@ pytestmark = pytest.mark.workflow
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_study_is_one_folder_and_no_list(tmp_path, monkeypatch):
+@pytest.fixture
+def studies(tmp_path):
+    """Studies may be in a folder of the test's, and are forgotten after it."""
+    with pytest.MonkeyPatch.context() as patch:
+        found = [*cysyk1999.studies.__path__, str(tmp_path)]
+        patch.setattr(cysyk1999.studies, "__path__", found)
+        patch.setattr(job, "_PARTS", dict(job.parts()))
+        job.parts.cache_clear()
+        yield tmp_path
+    job.parts.cache_clear()
+
+
+def test_a_study_is_one_folder_and_no_list(studies):
     recipe = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    folder = tmp_path / "deepest"
+    folder = studies / "deepest"
     folder.mkdir()
     (folder / "__init__.py").touch()
     for name in ("run.py", "jobs.py"):
         (code,) = re.findall(rf"```python\n# {name}\n(.*?)```", recipe, re.S)
         (folder / name).write_text(code)
-    monkeypatch.setattr(cysyk1999.studies, "__path__", [*cysyk1999.studies.__path__, str(tmp_path)])
-    monkeypatch.setattr(job, "_PARTS", dict(job.parts()))
-    job.parts.cache_clear()
-    try:
-        document = yaml.safe_load((ROOT / "config/thesis.yaml").read_text())
-        project = Project(read_config(document, "thesis.yaml"), "thesis.yaml", ROOT)
-        (task,) = project.part("deepest")
-        assert "deepest" in [target.name for target in project.part_targets()]
-        assert project.targets("deepest") == ["figures/tables/deepest.csv"]
-    finally:
-        job.parts.cache_clear()
-    history = tmp_path / "history.nc"
+    document = yaml.safe_load((ROOT / "config/thesis.yaml").read_text())
+    project = Project(read_config(document, "thesis.yaml"), "thesis.yaml", ROOT)
+    (task,) = project.part("deepest")
+    assert "deepest" in [target.name for target in project.part_targets()]
+    assert project.targets("deepest") == ["figures/tables/deepest.csv"]
+    history = studies / "history.nc"
     xr.Dataset({"indentation_depth": ("time", [0.0, 2e-3, 1e-3])}).to_netcdf(history)
 
     class Words:
-        histories, table = [str(history)], [str(tmp_path / "deepest.csv")]
+        histories, table = [str(history)], [str(studies / "deepest.csv")]
 
     task.do(Words)
-    assert pd.read_csv(tmp_path / "deepest.csv")["deepest (mm)"].tolist() == [2.0]
+    assert pd.read_csv(studies / "deepest.csv")["deepest (mm)"].tolist() == [2.0]
