@@ -14,7 +14,7 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures studies smoke test soak bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
+.PHONY: help setup figures studies smoke test coverage soak bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
@@ -65,6 +65,10 @@ smoke: $(INSTALLED)
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --durations 25
+
+# the tests take twice as long while lines are counted; compiled loops are not
+coverage: $(INSTALLED)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --cov fingerpad --cov cysyk1999 --cov-report term:skip-covered
 
 N ?= 1000
 SEED ?= 0

@@ -63,7 +63,7 @@ def simulated(folder, *slabs):
         env=os.environ
         | {
             "NUMBA_CACHE_DIR": str(folder / "loops"),
-            "PYTHONPATH": str(Path(__file__).parent),
+            "PYTHONPATH": os.pathsep.join(map(str, (Path(__file__).parent, *sys.path))),
             "PYTHONHASHSEED": "0",
         },
     )
@@ -76,10 +76,10 @@ def test_a_process_takes_what_others_compiled_and_mixes_nothing_up(slabs):
     took both, ran those of the first for both and crashed.
     """
     quads, triangles = "quads.msh", "triangles.msh"
-    (of_quads, compiled), (of_triangles, again) = (
+    (of_quads, first), (of_triangles, second) = (
         simulated(slabs, name) for name in (quads, triangles)
     )
-    assert (compiled, again) == ("True", "True")
+    assert (first, second) == ("True", "True")
     assert simulated(slabs, quads, triangles) == [of_quads, of_triangles, "False"]
     assert simulated(slabs, triangles, quads) == [of_triangles, of_quads, "False"]
 

@@ -378,12 +378,14 @@ def test_a_history_knows_its_plan_scene_force_and_errors(run):
 def test_receptors_are_found_by_their_depth(run):
     history = run[3]
     for number, (depth, offset) in enumerate((d, x) for d in (6e-4, 9.15e-4) for x in (-5e-4, 0)):
-        at = history.fingerpad.receptor(depth=depth, offset=offset)
+        at = history.fingerpad.sel(depth=depth, offset=offset)
         assert (float(at.receptor_depth), float(at.receptor_offset)) == (depth, offset), number
-    middle = history.fingerpad.receptor(depth=9.15e-4).strain_energy_density
+    middle = history.fingerpad.sel(depth=9.15e-4).strain_energy_density
     np.testing.assert_array_equal(middle, history.strain_energy_density[:, 4])
     with pytest.raises(KeyError, match="no receptor at depth 700 um, offset 0 mm"):
-        history.fingerpad.receptor(depth=7e-4)
+        history.fingerpad.sel(depth=7e-4)
+    with pytest.warns(DeprecationWarning, match="receptor is now sel"):
+        assert history.fingerpad.receptor(9.15e-4).identical(history.fingerpad.sel(9.15e-4))
 
 
 def test_public_names_are_at_the_top():
@@ -396,6 +398,8 @@ def test_public_names_are_at_the_top():
 
 def test_a_plan_is_readable(run):
     said = str(run[1])
+    assert len(repr(run[1])) < 300 and run[1].element in repr(run[1])
+    assert "times" in repr(run[3].fingerpad)
     for name, effect in run[1].effects.items():
         assert name.replace("_", " ") in said and effect.why.split()[0] in said
     assert run[1]._repr_html_().startswith("<table>")

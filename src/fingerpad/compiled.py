@@ -35,7 +35,7 @@ class _Notice(event.Listener):
 
     def on_start(self, event):
         if not self._begun:
-            text = "fingerpad: compiling loops for this machine, once; about a minute in all"
+            text = "fingerpad: compiling loops for this machine, once; about a quarter of a minute"
             self._shown.enter_context(waiting(text))
         self._begun.append(time.process_time())
 

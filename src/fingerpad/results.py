@@ -11,6 +11,7 @@ import json
 import platform
 import resource
 import sys
+import warnings
 from collections.abc import Mapping
 from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
@@ -629,7 +630,20 @@ class HistoryAccessor:
             "asked": asked if np.isfinite(asked) else None,
         }
 
+    def __repr__(self) -> str:
+        sizes = self._history.sizes
+        return (
+            f"history of {self._history.attrs['scene']!r}: {sizes['time']} times, "
+            f"{sizes['receptor']} receptors; .plan, .scene, .force_N, .errors, "
+            ".sel(depth=, offset=)"
+        )
+
     def receptor(self, depth: float, offset: float = 0.0) -> xr.Dataset:
+        """The old name of :meth:`sel`; it goes with the next version."""
+        warnings.warn("history.fingerpad.receptor is now sel", DeprecationWarning, stacklevel=2)
+        return self.sel(depth, offset)
+
+    def sel(self, depth: float, offset: float = 0.0) -> xr.Dataset:
         """The history at one receptor.
 
         Parameters

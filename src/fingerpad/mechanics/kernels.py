@@ -575,7 +575,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return network, springs
 
     every = (assemble_tangent, internal_force, commit, energies)
-    # An edited law is compiled again; helpers of a law from outside this package are not known.
+    # A law of this package is kept, named after its source, so that an edited one is compiled
+    # again. A law from outside is not kept: what its functions call is not in the name.
     kept = _JIT["cache"] and law.stress.__module__.startswith("fingerpad.")
     compiled = njit(**_JIT | {"cache": kept})
     sizes = law.name, law.source[:16], nodes, points, modes

@@ -207,6 +207,8 @@ class PlannedEffect:
         What is done whatever the rules say.
     title, marker
         In the picture of the study.
+    place
+        Its place in plans and tables.
     """
 
     name: str
@@ -224,6 +226,7 @@ class PlannedEffect:
     always: str = ""
     title: str = ""
     marker: str = "o"
+    place: int = 99
 
 
 OWN_PAIR = "own pair"

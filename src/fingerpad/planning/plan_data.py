@@ -281,6 +281,14 @@ class Plan:
         lines.append(f"predicted cost: {self.predicted_cost_s:.2g} s of one core")
         return Group(effects, details, *whole, *map(Text, lines))
 
+    def __repr__(self) -> str:
+        on = [name for name, effect in self.effects.items() if effect.on]
+        return (
+            f"Plan(effects on: {', '.join(on) or 'none'}; {self.element}, {self.nodes} nodes, "
+            f"{self.steps} steps; expected error {percent(self.estimated_error)}, "
+            f"{self.predicted_cost_s:.2g} s of one core)"
+        )
+
     def __str__(self) -> str:
         page = io.StringIO()
         Console(file=page, width=100, color_system=None).print(self.shown(), crop=False)

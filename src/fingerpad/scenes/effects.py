@@ -1,8 +1,13 @@
 """The effects that a scene may switch.
 
-Planning, which decides on them, stands above scenes and is not imported here; its register
-(:mod:`fingerpad.planning.effects`) has the same names.
+Planning, which decides on them, stands above scenes and is not imported here: their names are
+those of its files.
 """
 
-EFFECTS: list[str] = ["finite_strain", "friction", "ridges", "symmetry", "viscoelasticity"]
+import pkgutil
+from pathlib import Path
+
+_FILES = Path(__file__).parents[1] / "planning" / "effects"
+
+EFFECTS: list[str] = [file.name for file in pkgutil.iter_modules([str(_FILES)])]
 """Names of effects, as scenes switch them; one that is registered at run time is appended."""

@@ -15,6 +15,7 @@ columns are keys with their units, such as ``stimulus.curvature (1/m)``, its row
 
 from __future__ import annotations
 
+import html
 import math
 import re
 from collections.abc import Mapping
@@ -509,6 +510,17 @@ class Sweep(Strict):
     """Whether the history of every scene is kept, as a file."""
     accuracy: Any = Field(default=None, json_schema_extra=_ACCURACY)
     """Accuracy in place of what the scene says."""
+
+    def __repr__(self) -> str:
+        drawn = "" if self.samples is None else f" of {self.samples} points, seed {self.seed}"
+        return f"Sweep({self.design}{drawn} over {', '.join(self.over)}; keeps {len(self.keep)})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{html.escape(key)}</td><td>{html.escape(str(axis))}</td></tr>"
+            for key, axis in self.over.items()
+        )
+        return f"<table>{rows}</table><p>{html.escape(repr(self))}</p>"
 
 
 @dataclass(frozen=True)

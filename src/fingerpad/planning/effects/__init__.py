@@ -1,25 +1,27 @@
 """The effects that a plan decides on: one file each, with its question, its rules, its decision and
 the scenes that show it.
 
-A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here; one of your own
-is registered while it is needed (:func:`registered`). Scene language, plan, simulation, the study
-of effects, its tables and its picture read the register and name no effect.
+A new one is a file that is called as the effect and ends in ``EFFECT = PlannedEffect(...)``; no
+list names it. One of your own is registered while it is needed (:func:`registered`). Scene
+language, plan, simulation, the study of effects, its tables and its picture read the register and
+name no effect.
 """
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from graphlib import TopologicalSorter
+from importlib import import_module
 
 from fingerpad.planning.effect import Effect, Parts, PlannedEffect
-from fingerpad.planning.effects import finite_strain, friction, ridges, symmetry, viscoelasticity
 from fingerpad.scenes.effects import EFFECTS as NAMES
 from fingerpad.scenes.scene import Scene
 
+_FOUND: list[PlannedEffect] = [import_module(f"{__name__}.{name}").EFFECT for name in NAMES]
+
 EFFECTS: dict[str, PlannedEffect] = {
-    each.EFFECT.name: each.EFFECT
-    for each in (symmetry, viscoelasticity, finite_strain, friction, ridges)
+    effect.name: effect for effect in sorted(_FOUND, key=lambda effect: effect.place)
 }
-"""Name -> effect, in the order of the study."""
+"""Name -> effect, in the order of their places."""
 
 
 def in_order() -> list[PlannedEffect]:

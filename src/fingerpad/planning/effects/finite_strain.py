@@ -50,6 +50,7 @@ LIGHT = {"motion": [{"press_to_force": "0.02 gf", "rate": "0.04 gf/s"}, {"hold":
 
 EFFECT = PlannedEffect(
     name="finite_strain",
+    place=3,
     question="are displacements and strains large?",
     decide=decide,
     turn_on=lambda parts: replace(parts, large_strain=True),

@@ -37,6 +37,7 @@ STROKE = {"motion": [PRESS, {"slide": "4 mm", "speed": "10 mm/s"}]}
 
 EFFECT = PlannedEffect(
     name="friction",
+    place=4,
     question="does the skin stick to the stimulus?",
     decide=decide,
     turn_on=lambda parts: replace(parts, friction=parts.scene.friction),

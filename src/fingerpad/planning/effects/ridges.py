@@ -124,6 +124,7 @@ def _check_ridges(ridges: Ridges, most_nodes: float) -> None:
 
 EFFECT = PlannedEffect(
     name="ridges",
+    place=5,
     question="do ridges change the answers?",
     decide=decide,
     turn_on=lambda parts: replace(parts, ridges=parts.scene.specimen.ridges),

@@ -35,6 +35,7 @@ LOPSIDED = {
 
 EFFECT = PlannedEffect(
     name="symmetry",
+    place=1,
     question="is half the pad enough?",
     decide=decide,
     turn_on=lambda parts: replace(parts, half=True),

@@ -88,6 +88,7 @@ def _ramp(rate: str) -> dict[str, list]:
 
 EFFECT = PlannedEffect(
     name="viscoelasticity",
+    place=2,
     question="does stress relax while the motion lasts?",
     decide=decide,
     turn_on=lambda parts: replace(parts, relaxes=True),
