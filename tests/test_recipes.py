@@ -60,10 +60,10 @@ def test_the_laws_and_effects_of_the_package_are_its_files():
 
 
 def test_an_effect_is_one_file(tmp_path):
-    effect = run("cold.py", tmp_path)["EFFECT"]
+    effect = run("light_touch.py", tmp_path)["EFFECT"]
     light = SCENE | {"motion": [{"press_to_force": "0.5 gf"}]}
     with registered(effect):
-        assert plan(light).effects["cold"].on and not plan(SCENE).effects["cold"].on
+        assert plan(light).effects["light_touch"].on and not plan(SCENE).effects["light_touch"].on
 
 
 @pytest.fixture(scope="module")

@@ -382,8 +382,11 @@ def test_receptors_are_found_by_their_depth(run):
         assert (float(at.receptor_depth), float(at.receptor_offset)) == (depth, offset), number
     middle = history.fingerpad.sel(depth=9.15e-4).strain_energy_density
     np.testing.assert_array_equal(middle, history.strain_energy_density[:, 4])
-    with pytest.raises(KeyError, match="no receptor at depth 700 um, offset 0 mm"):
+    with pytest.raises(KeyError, match="no receptor at depth 700 um, offset 0 mm; there are"):
         history.fingerpad.sel(depth=7e-4)
+    for wrong in ([6e-4, 9.15e-4], "915 um", np.array([6e-4])):
+        with pytest.raises(TypeError, match="depth: .* is not a number; allowed: one number, in m"):
+            history.fingerpad.sel(depth=wrong)
     with pytest.warns(DeprecationWarning, match="receptor is now sel"):
         assert history.fingerpad.receptor(9.15e-4).identical(history.fingerpad.sel(9.15e-4))
 
@@ -399,7 +402,8 @@ def test_public_names_are_at_the_top():
 def test_a_plan_is_readable(run):
     said = str(run[1])
     assert len(repr(run[1])) < 300 and run[1].element in repr(run[1])
-    assert "times" in repr(run[3].fingerpad)
+    for part in (run[3], run[3].fingerpad.sel(9.15e-4), run[3].drop_attrs()):
+        assert len(repr(part.fingerpad)) < 400
     for name, effect in run[1].effects.items():
         assert name.replace("_", " ") in said and effect.why.split()[0] in said
     assert run[1]._repr_html_().startswith("<table>")

@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Mapping
 from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -631,12 +632,8 @@ class HistoryAccessor:
         }
 
     def __repr__(self) -> str:
-        sizes = self._history.sizes
-        return (
-            f"history of {self._history.attrs['scene']!r}: {sizes['time']} times, "
-            f"{sizes['receptor']} receptors; .plan, .scene, .force_N, .errors, "
-            ".sel(depth=, offset=)"
-        )
+        sizes = ", ".join(f"{size} {name}" for name, size in self._history.sizes.items())
+        return f"<fingerpad accessor ({sizes}): plan, scene, force_N, errors, sel(depth, offset)>"
 
     def receptor(self, depth: float, offset: float = 0.0) -> xr.Dataset:
         """The old name of :meth:`sel`; it goes with the next version."""
@@ -644,18 +641,23 @@ class HistoryAccessor:
         return self.sel(depth, offset)
 
     def sel(self, depth: float, offset: float = 0.0) -> xr.Dataset:
-        """The history at one receptor.
+        """The history at one receptor; for several: ``history.sel(receptor=[0, 1])``.
 
         Parameters
         ----------
         depth, offset
-            m, below the undeformed skin and to the right of its middle.
+            One number each, in m: below the undeformed skin and to the right of its middle.
 
         Raises
         ------
         KeyError
             There is no receptor within 1 um of that place.
+        TypeError
+            One of them is not a number.
         """
+        for name, value in {"depth": depth, "offset": offset}.items():
+            if not isinstance(value, Real):
+                raise TypeError(f"{name}: {value!r} is not a number; allowed: one number, in m")
         return self._history.isel(receptor=receptor_index(self._history, depth, offset))
 
 
@@ -664,5 +666,7 @@ def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> in
     depths, offsets = (history.variables[f"receptor_{name}"].values for name in ("depth", "offset"))
     miss = np.hypot(depths - depth, offsets - offset)
     if not len(miss) or miss.min() > 1e-6:
-        raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
+        known = ", ".join(f"{d * 1e6:g} um" for d in np.unique(depths))
+        place = f"depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm"
+        raise KeyError(f"no receptor at {place}; there are depths of {known or 'none'}")
     return int(miss.argmin())

@@ -316,6 +316,7 @@ def read_plan(path: str | Path) -> Plan:
     Parameters
     ----------
     path
-        A plan.json, as :meth:`Plan.write` or ``fingerpad run`` writes it.
+        A plan.json, as :meth:`Plan.write` or ``fingerpad run`` writes it, or the folder of a run.
     """
-    return Plan.from_dict(json.loads(Path(path).read_text(encoding="utf-8")))
+    file = Path(path) / "plan.json" if Path(path).is_dir() else Path(path)
+    return Plan.from_dict(json.loads(file.read_text(encoding="utf-8")))
