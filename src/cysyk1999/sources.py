@@ -14,6 +14,8 @@ import grimp
 import fingerpad
 
 PACKAGES = ("fingerpad", "cysyk1999")
+REGISTERS = ("fingerpad.laws", "fingerpad.planning.effects")
+"""Packages that import the files in them without naming one."""
 
 
 @cache
@@ -50,14 +52,15 @@ def imported_sources(*modules: str) -> list[Path]:
     -----
     Imports inside functions count; those under ``TYPE_CHECKING`` do not. A module rests on what its
     package imports, and on the YAML file of its name beside it. Who imports a verb from
-    ``fingerpad`` rests on the modules of all verbs.
+    ``fingerpad`` rests on the modules of all verbs; who imports one of `REGISTERS`, on its files.
     """
     found: set[str] = set()
     todo = set(modules)
     while todo:
         found |= todo.union(*map(_upstream, todo))
-        verbs = set(fingerpad.HOMES.values()) if "fingerpad" in found else set()
-        todo = ({name.rpartition(".")[0] for name in found} | verbs) - found - {"", "fingerpad"}
+        unnamed = set(fingerpad.HOMES.values()) if "fingerpad" in found else set()
+        unnamed = unnamed.union(*map(_imports().find_children, found.intersection(REGISTERS)))
+        todo = ({name.rpartition(".")[0] for name in found} | unnamed) - found - {"", "fingerpad"}
     files = [_file(name) for name in found | {name.partition(".")[0] for name in found}]
     data = (file.with_suffix(".yaml") for file in files)
     return sorted([*files, *(file for file in data if file.exists())])
