@@ -32,6 +32,11 @@ def test_a_verb_of_the_package_brings_what_it_runs():
     )
 
 
+def test_a_register_brings_the_files_that_it_does_not_name():
+    found = names("cysyk1999.workflow.simulate")
+    assert {"laws/yeoh.py", "effects/friction.py", "effects/ridges.py"} <= found
+
+
 def test_the_digest_follows_names_and_contents(tmp_path):
     (tmp_path / "a.py").write_text("1")
     seen = {code_digest(tmp_path)}

@@ -15,14 +15,14 @@ from cysyk1999.measures.table import Instead, Measures
 from cysyk1999.reference_data import read_reference
 from fingerpad import load_scene, plan, simulate
 from fingerpad.laws import LAWS
-from fingerpad.planning.effects import EFFECTS, NAMES, registered
+from fingerpad.planning.effects import registered
 from test_laws import check_derivatives
 
 pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]
 SCENE = {
     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
-    "motion": [{"press_to_force": "5 gf"}],
+    "motion": [{"press_to_force": "20 gf"}],
     "accuracy": {"skin_edge": "0.8 mm", "steps": 4},
 }
 
@@ -48,15 +48,12 @@ def test_a_law_is_one_file(tmp_path, monkeypatch):
         float(simulate(load_scene(SCENE | {"specimen": {"layers": layers}})).indentation_depth[-1])
         for layers in ({}, stiff)
     ]
-    assert 0.9 * depth[0] < depth[1] < depth[0], "a limit stiffens, a little"
+    assert 0.9 * depth[0] < depth[1] < 0.999 * depth[0], "a limit stiffens, a little"
 
 
-def test_the_laws_and_effects_of_the_package_are_its_files():
-    folder = ROOT / "src/fingerpad"
-    files = {path.stem for path in (folder / "laws").glob("[a-z]*.py")} - {"law"}
+def test_the_laws_of_the_package_are_its_files():
+    files = {path.stem for path in (ROOT / "src/fingerpad/laws").glob("[a-z]*.py")} - {"law"}
     assert set(LAWS) == files
-    assert set(EFFECTS) == {path.stem for path in (folder / "planning/effects").glob("[a-z]*.py")}
-    assert set(EFFECTS) == set(NAMES)
 
 
 def test_an_effect_is_one_file(tmp_path):

@@ -483,6 +483,12 @@ def test_a_scene_without_a_record_is_an_error_not_a_hole(laid, tmp_path, monkeyp
 # --- processes ------------------------------------------------------------------------------------
 
 
+def test_a_sweep_is_readable():
+    told = sweep_of({CURVATURE: ["100 1/m", "200 1/m"]}).sweep
+    assert CURVATURE in repr(told) and len(repr(told)) < 200
+    assert CURVATURE in told._repr_html_() and told._repr_html_().startswith("<table>")
+
+
 def test_a_sweep_runs_in_processes_and_gives_the_numbers_of_its_scenes(tmp_path):
     over = {CURVATURE: ["100 1/m", "200 1/m"]}
     data = engine.sweep(COARSE, over, out=tmp_path / "out", cores=2)

@@ -513,7 +513,8 @@ class Sweep(Strict):
 
     def __repr__(self) -> str:
         drawn = "" if self.samples is None else f" of {self.samples} points, seed {self.seed}"
-        return f"Sweep({self.design}{drawn} over {', '.join(self.over)}; keeps {len(self.keep)})"
+        over, kept = ", ".join(self.over), len(self.keep)
+        return f"Sweep({self.design}{drawn} over {over}; keeps {kept} measures)"
 
     def _repr_html_(self) -> str:
         rows = "".join(
