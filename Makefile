@@ -14,6 +14,9 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
+# Python keeps what it compiles, beside the sources: packages are compiled when they are first imported.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help setup figures studies smoke test coverage soak bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
 
 help:
@@ -38,18 +41,8 @@ help:
 
 setup: $(INSTALLED)
 
-$(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries.sh
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	  { echo "fingerpad needs Python 3.11 or newer; name one with: make PYTHON=python3.12" >&2; exit 1; }
-	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
-	  { echo "$(PYTHON) cannot make a virtual environment; on Debian: sudo apt-get install -y python3-venv" >&2; exit 1; }
-	@sh workflow/scripts/system_libraries.sh $(PYTHON)
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
-# Python itself keeps what it compiles only where PYTHONDONTWRITEBYTECODE is not set.
-	$(BIN)/python -m compileall -q src
-	$(BIN)/python workflow/scripts/compile_kernels.py
+$(INSTALLED): requirements.lock workflow/installer.lock pyproject.toml workflow/scripts/setup.sh workflow/scripts/system_libraries.sh
+	@sh workflow/scripts/setup.sh $(PYTHON) $(VENV)
 	@cp requirements.lock $@
 
 figures: $(INSTALLED)
@@ -107,8 +100,8 @@ regression-update: figures
 	$(BIN)/python docs/_ext/published.py
 
 specimens: $(INSTALLED)
-	$(SNAKEMAKE) calibration
-	cp results/thesis/specimens/calibrated_*.yaml config/specimens/
+	$(SNAKEMAKE) calibration spheres
+	cp results/thesis/specimens/calibrated_*.yaml results/thesis/spheres/specimens/dome_*.yaml config/specimens/
 
 pad: $(INSTALLED)
 	$(SNAKEMAKE) reconstruction

@@ -9,11 +9,11 @@ from pathlib import Path
 import synthetic
 from cysyk1999.figures.registry import CHAPTERS, FIGURES
 from cysyk1999.publishing.style import theme
-from cysyk1999.publishing.write import read_frame, write_frame
+from cysyk1999.publishing.tables import read_frame, write_frame
 from cysyk1999.reference_data import read_reference
 
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
-LAWS = ("4-17", "4-22", "5-14")
+LAWS = ("4-9", "4-17", "4-22", "5-14")
 
 
 @cache
@@ -49,7 +49,7 @@ def picture(number):
 RATES = tuple(
     s.number
     for name, specs in CHAPTERS.items()
-    if name.endswith("_receptors")
+    if name.endswith(("_receptors", "_bursts"))
     for s in specs
     if s.number not in LAWS
 )

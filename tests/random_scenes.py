@@ -18,6 +18,7 @@ from cysyk1999.studies.common.meshes import split
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import load_scene, scene_json_schema
 from fingerpad.specimen import build_pad_mesh, read_pad_mesh, write_pad
+from fingerpad.stimuli.shapes import SHAPES
 from fingerpad.sweeps.language import sweep_json_schema
 from fingerpad.units import QuantityError, unit_of
 
@@ -211,6 +212,8 @@ def scenes(draw):
     defs, parts = schema["$defs"], schema["properties"]
     shapes = [name for name, model in defs.items() if "shape" in model.get("required", ())]
     scene = {"stimulus": draw(values(defs[draw(st.sampled_from(sorted(shapes)))], defs))}
+    if "plane_strain" not in SHAPES[scene["stimulus"]["shape"]].kinematics:
+        scene["kinematics"] = "axisymmetric"
     first = draw(values(defs[draw(st.sampled_from(["PressToForce", "PressToDepth"]))], defs))
     listed = next(each for each in parts["motion"]["anyOf"] if each.get("type") == "array")
     later = values(listed["items"], defs, "motion")

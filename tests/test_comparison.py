@@ -23,6 +23,7 @@ from cysyk1999.claims.rows import SETS, Number, numbers
 from cysyk1999.claims.sensitivity import BASE, NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
 from cysyk1999.claims.tables import TABLES
 from cysyk1999.claims.verdicts import judge
+from cysyk1999.measures.energy_of_1999 import as_of_1999
 from cysyk1999.measures.table import COLUMNS as MEASURE_COLUMNS
 from cysyk1999.measures.table import (
     INSTEAD,
@@ -33,7 +34,7 @@ from cysyk1999.measures.table import (
     read_measures,
     write_measures,
 )
-from cysyk1999.publishing.write import markdown, publish_table
+from cysyk1999.publishing.tables import markdown, publish_table
 from cysyk1999.reference_data import read_reference
 from fingerpad.measures.features import centre_node, scene_name
 from fingerpad.measures.measure import Measure
@@ -49,7 +50,8 @@ REFERENCE, SCENES = CONFIG / "reference/thesis_numbers.csv", CONFIG / "scenes"
 @pytest.fixture(scope="module")
 def made():
     histories = synthetic.histories()
-    return histories, synthetic.companions(1.0125, 1.01), synthetic.meshes(histories)
+    shown = {name: as_of_1999(history) for name, history in histories.items()}
+    return shown, synthetic.companions(1.0125, 1.01), synthetic.meshes(histories)
 
 
 def _table(name, histories, coarse, meshes):
@@ -206,8 +208,8 @@ def scored():
     given = [
         ("a", "input", "", "", "value", "inside"),
         ("b", "count", "", "", "axis", "plausible"),
-        ("c", "calibrated", "", "", "range", "inside"),  # calibrated: fitted, whatever else
-        ("d", "result", "fitted", "", "value", "outside"),
+        ("c", "calibrated", "fitted", "", "range", "inside"),  # a parameter was chosen by it
+        ("d", "result", "fitted", "", "range", "outside"),
         ("e", "result", "", "", "value", "inside"),
         ("f", "result", "", "e", "value", "inside"),  # the same number again
         ("g", "result", "", "", "axis", "outside"),
@@ -225,7 +227,8 @@ def scored():
 def test_scores_tell_what_was_held_out_from_what_was_fitted_and_count_nothing_twice(scored):
     found = scores(*scored).set_index(["kind", "score"])
     assert {kind: found.loc[kind].to_numpy().tolist() for kind in found.index.levels[0]} == {
-        "value or range": [[1, 2], [1, 1], [2, 3]],  # fitted, held out, all
+        "value": [[0, 0], [1, 1], [1, 1]],  # fitted, held out, all
+        "range": [[0, 1], [0, 0], [0, 1]],
         "axis": [[0, 0], [1, 2], [1, 2]],
         "trend": [[0, 0], [1, 2], [1, 2]],
     }
@@ -233,12 +236,14 @@ def test_scores_tell_what_was_held_out_from_what_was_fitted_and_count_nothing_tw
 
 def test_the_summary_begins_with_what_was_held_out(scored):
     text = summary(*scored)
-    assert text.startswith("**Held out: 1 of 1 (fitted 1 of 2, all 2 of 3) values")
+    assert text.startswith("**Held out: 1 of 1 stated numbers are met (fitted 0 of 0, all 1 of 1)")
     for part in (
-        "1 of 2 (fitted 0 of 0, all 1 of 2) axes",
+        "0 of 0 ranges are met (fitted 0 of 1, all 0 of 1)",
+        "between the last two ticks (fitted 0 of 0, all 1 of 2)",
         "2 of 2 inputs and counts",
+        "1 numbers chose a parameter",
         "1 rows repeat",
-        "1 trends hold by construction",
+        "1 rows hold by construction",
     ):
         assert part in text
 
@@ -270,12 +275,21 @@ def test_a_row_that_repeats_another_has_its_measure_and_a_bound_on_its_curve(ref
 
 def test_a_tick_is_below_the_end_of_its_axis(reference):
     ticks = reference[reference["tick"].notna()]
-    assert (
-        len(ticks) > 60
-        and ticks["form"].eq("axis").all()
-        and (ticks["tick"] < ticks["high"]).all()
-        and (ticks["tick"] > 0).all()
-    )
+    assert len(ticks) > 60 and ticks["form"].eq("axis").all()
+    assert (ticks["tick"] < ticks["high"]).all() and (ticks["tick"] >= 0).all()
+
+
+def test_a_garbled_reading_has_the_tolerance_of_a_legible_one(reference):
+    """A tenth of stated numbers; of widths over nodes 67.2 um apart what two of them add."""
+    results = reference[reference["role"].eq("result")]
+    values = results[results["form"].eq("value") & results["low"].notna()]
+    assert len(values) > 5 and values["tolerance"].eq(0.1).all()
+    widths = results[results["units"].eq("1/mm")]
+    added = 1 - 1 / (1 + 2 * 67.2e-3 * widths["low"])
+    assert widths["tolerance"].to_numpy() == pytest.approx(added.to_numpy(), abs=1e-4)
+    assert set(widths["kind"]) == {"axis_range", "garbled"} and len(widths) == 9
+    others = results[results["form"].isin(["range", "axis"]) & ~results["units"].eq("1/mm")]
+    assert others["tolerance"].isna().all()
 
 
 def test_the_error_is_what_the_companion_leaves_of_it_in_the_rows_units(table):

@@ -13,6 +13,7 @@ from numba import njit
 from fingerpad import compiled
 from fingerpad.laws import LAWS, NEO_HOOKE
 from fingerpad.mechanics import kernels
+from fingerpad.mechanics.kinematics import KINEMATICS, PLANE_STRAIN
 from fingerpad.specimen import write_pad
 from own_meshes import slab_mesh, split
 
@@ -98,14 +99,15 @@ def test_laws_and_elements_have_files_of_their_own():
     moment, and crashed. An edited law must not run what was compiled of it before.
     """
     names = {
-        kernels.loops(law, *sizes).commit.py_func.__qualname__
+        kernels.loops(law, kinematics, *sizes).commit.py_func.__qualname__
         for law in (NEO_HOOKE, LAWS["yeoh"])
+        for kinematics in KINEMATICS.values()
         for sizes in ((9, 9, 3), (4, 4, 1), (7, 7, 3))
     }
-    assert len(names) == 6 and any(NEO_HOOKE.source[:16] in name for name in names)
+    assert len(names) == 12 and any(NEO_HOOKE.source[:16] in name for name in names)
 
 
 def test_loops_of_a_law_from_elsewhere_are_not_kept():
     foreign = replace(NEO_HOOKE, name="mine", stress=lambda i1, jac, mu, constants: (mu, 1.0))
-    assert kernels.loops(foreign, 9, 9, 3).commit.stats.cache_path is None
-    assert kernels.loops(NEO_HOOKE, 9, 9, 3).commit.stats.cache_path is not None
+    assert kernels.loops(foreign, PLANE_STRAIN, 9, 9, 3).commit.stats.cache_path is None
+    assert kernels.loops(NEO_HOOKE, PLANE_STRAIN, 9, 9, 3).commit.stats.cache_path is not None

@@ -2,6 +2,7 @@
 
 import doctest
 import json
+import re
 from importlib import import_module
 
 import pytest
@@ -11,6 +12,7 @@ from fingerpad import HOMES
 from fingerpad.cli import main
 from test_scene import CONFIG
 
+REFERENCE = CONFIG.parent / "docs/reference/python.rst"
 EXAMPLES = sorted((CONFIG / "scenes" / "examples").glob("*.yaml"))
 
 
@@ -25,9 +27,18 @@ def test_examples_of_docstrings_are_true(name):
 
 
 @pytest.mark.unit
-def test_each_verb_has_an_example():
-    for verb in ("load_scene", "plan", "simulate", "sweep", "respond"):
-        assert ">>> " in getattr(fingerpad, verb).__doc__, verb
+def test_examples_of_the_reference_are_true():
+    flags = doctest.ELLIPSIS
+    assert doctest.testfile(str(REFERENCE), module_relative=False, optionflags=flags).failed == 0
+
+
+@pytest.mark.unit
+def test_every_public_name_has_an_example():
+    """In its docstring, or on the page of the reference."""
+    lines = re.findall(r"^(?:>>>|\.\.\.) (.*)$", REFERENCE.read_text(encoding="utf-8"), re.M)
+    for name in fingerpad.__all__:
+        own = ">>> " in (getattr(fingerpad, name).__doc__ or "")
+        assert own or re.search(rf"fingerpad\.{name}\b", "\n".join(lines)), name
 
 
 @pytest.mark.unit

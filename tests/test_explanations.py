@@ -75,8 +75,8 @@ HOLDS, FAILS = "trend_holds", "trend_fails"
         # a reading explains nothing by what it was given
         (
             "smaller radius",
-            {"T323": ("outside", "outside", "inside"), "T108": ("outside", "outside", "inside")},
-            {"T323": False, "T108": True},
+            {"T323": ("outside", "outside", "inside"), "T101": ("outside", "outside", "inside")},
+            {"T323": False, "T101": True},
             [1, 0],
         ),
         # another energy is held against the published runs, not against those at draft accuracy

@@ -373,7 +373,7 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
     from cysyk1999.workflow import simulate
 
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
-    monkeypatch.setattr(simulate.simulation, "simulate", lambda *_, **__: histories[0])
+    monkeypatch.setattr(simulate.healing, "simulate", lambda *_, **__: histories[0])
     monkeypatch.setattr(simulate, "read_pad_mesh", lambda *_: None)
     given = {"scenes": [scene], "accuracies": ["as_stated"], "meshes": ["own"], "strides": ["1"]}
     job = types.SimpleNamespace(**given, histories=[str(folder / "history.nc")])

@@ -115,7 +115,8 @@ def test_target_is_the_thesis_s_number():
     committed = pd.read_csv(REFERENCE / "thesis_numbers.csv").set_index("id")
     columns = ["low", "high", "units"]
     assert committed.loc[STRETCH, columns].tolist() == [1, pytest.approx(np.nan, nan_ok=True), "mm"]
-    assert committed.loc[AXIS, columns].tolist() == [-1.25, -0.5, "mm"]
+    low, high, unit = committed.loc[AXIS, columns]
+    assert (float(low), float(high), unit) == (-1.25, -0.5, "mm")
 
 
 def test_variations_scale_the_coefficient():
@@ -152,7 +153,9 @@ def test_every_stroke_has_the_calibrated_coefficient():
     rows = table[table["study"] == "friction"].set_index("quantity")["estimate"]
     chosen = rows["coefficient, rounded"]
     assert chosen == pytest.approx(rounded(rows["coefficient"]), abs=1e-9)
-    names = [name for path in SCENES.glob("*stroke*.yaml") for name in read_family(path)]
+    # the stroke of the study of accuracy has the coefficient that its tables were measured with
+    families = set(SCENES.glob("*stroke*.yaml")) - {SCENES / "accuracy_stroke.yaml"}
+    names = [name for path in sorted(families) for name in read_family(path)]
     strokes = {f"stroke_{speed}" for speed in (1, 5, 10, 20, 40)}
     assert strokes | {f"stroke_sub_{speed}" for speed in (1, 10, 40)} < set(names)
     for name in names:

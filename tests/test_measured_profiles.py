@@ -2,6 +2,8 @@
 they solve.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
@@ -325,8 +327,10 @@ def test_the_advice_works(folder, monkeypatch):
     y = shape + 20 * (y - shape)
     monkeypatch.setattr(stepping, "MOST_ITERATIONS", 20)
     said = 'corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"'
+    path = Path(scene(folder, 1e3 * np.array([x, y]), PRESS, smooth="none"))
+    path.write_text(path.read_text() + "\non_trouble: stop\n")
     with pytest.raises(NonConvergence, match=said) as caught:
-        pressed(folder, x, y, "none")
+        simulate(path)
     advised = str(caught.value).split('stimulus.smooth: "')[1].split('"')[0]
     smooth = end_depth(folder, x, shape, "none")
     assert end_depth(folder, x, y, advised) == pytest.approx(smooth, rel=1e-2)

@@ -240,7 +240,7 @@ def test_a_stimulus_that_passes_through_the_pad_is_no_result(folder, capsys):
     )
     (folder / "scene.yaml").write_text(
         "stimulus: {shape: sampled, csv: needle.csv}\nmotion: [{press_to_force: 10 "
-        "gf}]\naccuracy: draft\n"
+        "gf}]\naccuracy: draft\non_trouble: stop\n"
     )
     assert main(["run", "scene.yaml", "--out", "out", "--quiet"]) == 3
     assert "mm deep in a pad that is" in capsys.readouterr().err

@@ -12,11 +12,11 @@ from cysyk1999.studies.common.documents import FLAT, scene_of
 from cysyk1999.studies.effects.picture import assemble, looks
 from cysyk1999.studies.effects.picture import effects as picture
 from cysyk1999.studies.effects.run import pairs, rules_table, study
+from fingerpad.healing import simulate
 from fingerpad.planning import effects
 from fingerpad.planning.effects import EFFECTS, in_order, registered
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan
 from fingerpad.scenes.effects import EFFECTS as NAMES
-from fingerpad.simulation import simulate
 
 pytestmark = pytest.mark.unit
 FIGURES = Path(__file__).parents[1] / "figures"

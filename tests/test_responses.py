@@ -18,11 +18,12 @@ from cysyk1999.measures.responses import (
     IMPULSE_RATE,
     P_LAW,
     SED_LAW,
+    SED_SQUARE,
     SHALLOW_DEPTH,
     TRIALS,
+    law_at,
     predicted_rate,
     rate_in,
-    shallow_law,
     skin_sample,
     time_mean,
     windowed,
@@ -109,11 +110,7 @@ def test_mean_frequency_of_many_trains_follows_the_rate(made, reference):
 
 @pytest.mark.parametrize(
     "number",
-    [
-        n
-        for n in FIGURES
-        if n in ("4-2", "4-3", "4-4", "4-5", "4-9", "4-18", "4-19", "4-25", "4-29")
-    ],
+    [n for n in FIGURES if n in ("4-2", "4-3", "4-4", "4-5", "4-18", "4-19", "4-25", "4-29")],
 )
 def test_pictures_say_predicted_inside_the_axes(made, reference, rates, number):
     own = rates if FIGURES[number].measured == "impulse_rates" else None
@@ -236,28 +233,34 @@ def test_a_law_for_each_node_is_closer_than_one_for_all(made, reference):
     assert left["Eq 4-1, a set for each"] < left["Eq 4-1, one set"]
 
 
-def _obeying(history):
-    """The history with the strain energy at 915 um that Eq 4-4 makes of its pressure."""
+def _obeying(history, law=LAW):
+    """The history with the strain energy at 915 um that a law makes of its pressure."""
     sample = skin_sample(history, 915e-6)
     row = abs(history["receptor_depth"].values - 915e-6) < 1e-9
     values = history["strain_energy_density"].values.copy()
-    values[:, row] = LAW.strain_energy(sample.x, sample.pressure, sample.indentation)[:, None]
+    values[:, row] = law.strain_energy(sample.x, sample.pressure, sample.indentation)[:, None]
     return _with(history, strain_energy_density=values)
 
 
-def test_line_of_eq_4_4_goes_through_the_points_of_a_pad_that_obeys_it(made, reference):
-    frame = _frame(
-        "4-22",
-        {name: _obeying(h) for name, h in made.items() if name.startswith("ramp40")},
-        reference,
-    )
+@pytest.mark.parametrize(
+    ("law", "column", "other"),
+    [(LAW, SED_LAW, SED_SQUARE), (SpatialSum(0.8e-3, square=3.0), SED_SQUARE, SED_LAW)],
+)
+def test_the_line_of_a_law_goes_through_the_points_of_a_pad_that_obeys_it(
+    made, reference, law, column, other
+):
+    obeying = {name: _obeying(h, law) for name, h in made.items() if name.startswith("ramp40")}
+    frame = _frame("4-22", obeying, reference)
     rows = frame[features.is_simulated(frame)]
-    assert rows[SED_LAW].to_numpy() == pytest.approx(rows[SED].to_numpy(), rel=1e-3, abs=1e-3)
+    assert rows[column].to_numpy() == pytest.approx(rows[SED].to_numpy(), rel=1e-3, abs=1e-3)
+    assert abs(rows[other] - rows[SED]).max() > 5
+    words = [text.get_text() for ax in FIGURES["4-22"].draw(frame).axes for text in ax.texts]
+    assert sum(" 0% off" in text for text in words) == len(NINE)
 
 
 def test_energies_at_600_um_are_scaled_to_the_mean_of_those_at_915_um(made):
     surfaces = NINE.histories(made)
-    law, factor = shallow_law(surfaces)
+    law, factor = law_at(made, SHALLOW_DEPTH)
 
     def mean(depth):
         return np.mean(
@@ -364,6 +367,12 @@ def test_energy_from_pressure_agrees(made):
     assert _holds(made, "TR87", **obeying)
     astray = {name: _scaled(obeying[name], 1.5) for name in ("ramp40_k158", "ramp40_k420")}
     assert not _holds(made, "TR87", **obeying | astray)
+
+
+@pytest.mark.parametrize("fall, parted", [(0.2, ""), (-0.1, "holds for flat; fails for 79")])
+def test_energy_from_pressure_falls_in_the_hold(fall, parted):
+    found = TRENDS["TR87a"](Measures(lambda quantity, scene: {"flat": 0.1, "79": fall}))
+    assert (found.holds, found.parted) == (fall > 0, parted)
 
 
 def test_sharp_surfaces_stand_out_more_at_600_um(made):

@@ -7,7 +7,7 @@ from matplotlib.colors import same_color
 from matplotlib.text import Text
 
 from cysyk1999.publishing.style import PAGE_WIDTH, TALLEST
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.stability.cases import METHODS, Limits
 from cysyk1999.studies.stability.picture import assemble, heat_map, long, table, tally
 

@@ -6,26 +6,25 @@ import pytest
 
 import synthetic
 from cysyk1999.claims.comparison import TRENDS
-from cysyk1999.figures.chapter5_receptors import PREDICTED
+from cysyk1999.figures.axes import scaling
+from cysyk1999.figures.chapter5 import PREDICTED
 from cysyk1999.figures.registry import FIGURES
-from cysyk1999.measures.quantities import TRIAL
+from cysyk1999.measures.quantities import SED_LAW, TRIAL
 from cysyk1999.measures.responses import (
     BURST_RATE,
     BURST_WIDTH,
     IMPULSE_RATE,
     STROKES_SHOWN,
     burst_values,
+    law_at,
     predicted_rate,
-    shallow_law,
-    stroke_law,
+    stroke_laws,
 )
-from cysyk1999.measures.runs import NINE
 from cysyk1999.measures.table import Measures
 from cysyk1999.receptors.recordings import RATES
 from cysyk1999.reference_data import empty_reference
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import SURFACES, is_simulated
-from fingerpad.receptors.laws import THESIS_RATE
 from test_stroke_trends import (
     LAW,
     NUMBERS,
@@ -70,10 +69,9 @@ def test_raster_is_seeded_and_counts_the_integral_of_the_rate(made, number, low,
     )
     assert sorted(ticks[TRIAL].unique()) == list(range(1, STROKES_SHOWN[number] + 1))
     pd.testing.assert_frame_equal(frame, _frame(felt, number))
-    nine = {label: felt[scene] for label, scene in NINE.scenes.items()}
-    depth, law = (
-        (560e-6, shallow_law(nine, 560e-6)[0]) if number == "5-22" else (915e-6, THESIS_RATE)
-    )
+    depth = 560e-6 if number == "5-22" else 915e-6
+    law, factor = law_at(felt, depth)
+    assert (factor != 1) == (number == "5-22") == (f"× {factor:.3g}" in scaling(frame))
     rate = predicted_rate(st.loaded(felt["stroke_10"]), depth, law)
     inside = rate["stroke_distance (mm)"].between(low, high)
     expected = np.trapezoid(rate[IMPULSE_RATE][inside], rate["time (s)"][inside])
@@ -117,7 +115,7 @@ def test_rate_of_ramp_and_hold_keeps_the_jump_at_the_top(made):
 
 
 def test_constants_and_shift_are_given_back_and_the_figure_shows_them(lawful):
-    law, shift = stroke_law(lawful)
+    law, shift = stroke_laws(lawful)[SED_LAW]
     assert (law.r, law.per_depth, law.constant) == pytest.approx(
         (LAW.r, LAW.per_depth, LAW.constant), rel=1e-2
     )
@@ -151,13 +149,17 @@ def test_plate_answered_at_the_beginning_one_way_and_throughout_the_other():
         traces = {"ridged_stroke_left": left, "ridged_stroke_right": right}
         return {name: with_energy(history, traces[name]) for name, history in plates.items()}
 
-    def holds(left, right):
-        return TRENDS["TR74"](Measures.of(sent(left, right))).holds
+    def holds(left, right, rows=("TR74", "TR74a")):
+        measures = Measures.of(sent(left, right))
+        return all(TRENDS[row](measures).holds for row in rows)
 
     steady, onset = np.full(len(d), 250.0), np.where(d < 3e-3, 250.0, 100.0)
     assert holds(steady, onset) and holds(onset, steady)
     assert not holds(steady, steady)
-    assert not holds(steady, np.full(len(d), 100.0))  # no response at all
+    assert holds(steady, onset, ["TR74"]) and not holds(steady, steady, ["TR74a"])
+    none = np.full(len(d), 100.0)
+    assert not holds(steady, none, ["TR74"]) and holds(steady, none, ["TR74a"])
+    assert not holds(onset, none, ["TR74a"])
     frame = _frame(sent(steady, onset), "5-27")
     ticks = frame[frame["panel"] == "raster"]
     assert ticks.loc[ticks["series"] == "right", "stroke_distance (mm)"].max() < 5
@@ -179,9 +181,11 @@ def test_numbers_are_those_of_the_figures(made):
     )
     assert _number(felt, "T280") == pytest.approx(_frame(felt, "5-19")[IMPULSE_RATE].max())
     assert _number(felt, "T287") == pytest.approx(_frame(felt, "5-20")[IMPULSE_RATE].max())
-    frequency = _frame(felt, "5-23")
-    fast = frequency[frequency["panel"].isin(["20 mm/s", "40 mm/s"])]
-    assert _number(felt, "T304") == pytest.approx(fast["predicted_frequency (impulses/s)"].max())
+    bars = _frame(felt, "5-23")
+    fast = bars[bars["series"].isin(["20 mm/s", "40 mm/s"])]
+    assert _number(felt, "T304") == pytest.approx(fast[IMPULSE_RATE].max())
+    peaks = _frame(felt, "5-17")
+    assert _number(felt, "T274") == pytest.approx(peaks[IMPULSE_RATE].max())
     assert _number(felt, "T219") == pytest.approx(10)
     for k, speed in enumerate(("5", "10", "20", "40")):
         widest = burst_values(st.loaded(felt[f"stroke_{speed}"]), BURST_WIDTH)
@@ -194,5 +198,5 @@ def test_number_of_impulses_is_that_of_the_sharpest_convexity(made):
     only = _felt(made, lambda k: 1000 * (k == "315"))
     whole = predicted_rate(st.loaded(only["stroke_40"]), 560e-6)
     expected = np.trapezoid(whole[IMPULSE_RATE], whole["time (s)"])
-    assert _number(only, "T305") == pytest.approx(expected, rel=0.15) and expected > 0.5
+    assert _number(only, "T305") == pytest.approx(expected, rel=0.25) and expected > 0.5
     assert _number(_felt(made, lambda k: 0), "T305") == 0

@@ -11,10 +11,10 @@ from cysyk1999.studies.common.documents import FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import split
 from fingerpad import simulation
 from fingerpad.cli import _error_line, main
+from fingerpad.healing import simulate
 from fingerpad.planning.estimates import PadEstimate
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan, read_plan, refined
 from fingerpad.results import read_history, summary
-from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.files import write_pad

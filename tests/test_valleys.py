@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fingerpad.healing import simulate
 from fingerpad.mechanics import valleys
 from fingerpad.mechanics.contact import ContactError, tangents
 from fingerpad.mechanics.friction import Coulomb
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.mechanics.valleys import Valleys
-from fingerpad.simulation import simulate
 from fingerpad.stimuli.curve import Curve
 from fingerpad.stimuli.shapes import Flat
 from test_contact import check_laws, problem, rows_of, solve, zone_of

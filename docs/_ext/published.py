@@ -1,10 +1,9 @@
-"""What the pages say of the published tables and of the pad: every such number is read here, and
-none is typed into a page.
+"""Numbers in the pages that the published tables have: where they stand, and what they must be.
 
-``<!-- name -->text<!-- / -->`` in a page holds ``numbers()["name"]``, and reads as the text alone
-wherever Markdown is shown. What a name stands for is a line of docs/numbers.yaml; tables and
-sentences are functions below. ``python docs/_ext/published.py`` writes the present
-numbers into the pages; so does each build of the documentation.
+``numbers`` of docs/numbers.yaml says how to read a number from a table; a function below makes what
+is more than a number. ``pages`` says where they stand: words of a page, with ``{name}`` in place of
+the number, or of a whole Markdown table. ``python docs/_ext/published.py`` writes the present
+numbers into the pages, and so does each build of the documentation. The pages hold no marks.
 """
 
 from __future__ import annotations
@@ -18,11 +17,14 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from cysyk1999.claims.comparison import AGREES, holding
+from cysyk1999.claims.comparison import judged_rows
+from cysyk1999.claims.said import figure_verdicts
+from cysyk1999.reference_data import read_reference
+from cysyk1999.studies.reconstruction.pads import poisson_for
+from cysyk1999.studies.reconstruction.specimen import most_probable
 from fingerpad import load_scene
 
 ROOT = Path(__file__).parents[2]
-MARKED = re.compile(r"<!-- (\w+) -->(.*?)<!-- / -->", re.S)
 _NUMBERS: dict[str, Callable[[], object]] = {}
 
 
@@ -34,15 +36,17 @@ def table(name: str) -> pd.DataFrame:
 
 
 @cache
+def reference() -> pd.DataFrame:
+    """The thesis's numbers and trends."""
+    return read_reference(ROOT / "config/reference/thesis_numbers.csv")
+
+
+@cache
 def compared() -> pd.DataFrame:
-    """Rows of the comparison that have been judged: their `kind` in the thesis, whether it
-    `agrees`.
+    """Rows of the comparison that have been judged: their `kind` in the thesis (value, range, axis
+    or trend), their `score`, whether each `agrees`.
     """
-    forms = pd.read_csv(ROOT / "config/reference/thesis_numbers.csv").set_index("id")["form"]
-    rows = table("thesis_comparison").join(forms, on="id")
-    kind = rows["form"].map({"axis": "axis", "trend": "trend"}).fillna("range")
-    rows = rows.assign(kind=kind, agrees=rows["verdict"].isin(AGREES))
-    return rows[rows["verdict"] != "not_comparable"]
+    return judged_rows(table("thesis_comparison"), reference())
 
 
 @cache
@@ -67,7 +71,50 @@ def pad() -> pd.DataFrame:
     return pd.DataFrame([dict(specimen.outline) | dict(specimen.ridges.inner) | layers | whole])
 
 
-PREPARED = {"pad": pad, "compared": compared, "outcomes": outcomes}
+@cache
+def readings() -> pd.DataFrame:
+    """Three rows, kinds of reading of the thesis's energies: how many powers of ten the evidence
+    for the likeliest of each is behind that of all (`behind`), also of the even figures when the
+    odd ones are known (`held_out`) and of the odd ones when the even ones are (`other_half`).
+    """
+    rows = table("reconstruction_readings")
+    name = rows["reading"]
+    formula, free = name.str.contains("plane_stress"), name.str.startswith("free_bulk")
+    kind = np.select([formula, free], ["formula", "compressible"], "elastic")
+    columns = {
+        "behind": "log evidence (1)",
+        "held_out": "even, odd known (1)",
+        "other_half": "odd, even known (1)",
+    }
+    best = rows.groupby(kind)[list(columns.values())].max()
+    behind = (best.max() - best) / np.log(10)
+    return behind.set_axis(list(columns), axis=1).rename_axis("kind").reset_index()
+
+
+@cache
+def posterior() -> pd.DataFrame:
+    """What the reading nearest to the printed words implies of every unknown."""
+    rows = table("reconstruction_posterior")
+    return rows[rows["reading"] == most_probable(table("reconstruction_readings"))]
+
+
+@cache
+def pads() -> pd.DataFrame:
+    """Two rows: the pad of scenes with elastic energies, and as shown here, with their `distance`
+    from the evidence and how much of it they meet (`inside`).
+    """
+    rows = table("reconstruction_families").head(2)
+    return rows.assign(distance=rows["distance, all (1)"], inside=rows["inside, all"])
+
+
+PREPARED = {
+    "readings": readings,
+    "posterior": posterior,
+    "pads": pads,
+    "pad": pad,
+    "compared": compared,
+    "outcomes": outcomes,
+}
 """Tables that are made of the published ones."""
 
 
@@ -82,40 +129,53 @@ def read(address: str) -> str:
     return str(eval(shown, {**columns, **SHOWN, "rows": rows}))
 
 
+def _entries(part: str) -> dict:
+    return yaml.safe_load((ROOT / "docs/numbers.yaml").read_text(encoding="utf-8"))[part]
+
+
 def numbers() -> dict[str, str]:
     """All of them, as text."""
-    addresses = yaml.safe_load((ROOT / "docs/numbers.yaml").read_text(encoding="utf-8"))
-    texts = {name: read(address) for name, address in addresses.items()}
+    texts = {name: read(address) for name, address in _entries("numbers").items()}
     return texts | {name: str(made()) for name, made in _NUMBERS.items()}
 
 
-def pages() -> list[Path]:
-    """The pages that are written by hand."""
-    ours = (
-        path
-        for path in (ROOT / "docs").rglob("*.md")
-        if not {"_build", "generated"} & set(path.parts)
-    )
-    return [ROOT / "README.md", ROOT / "workflow/profiles/slurm/README.md", *sorted(ours)]
+def pages() -> dict[Path, list[str]]:
+    """Page -> the words around its numbers."""
+    return {ROOT / page: words for page, words in _entries("pages").items()}
 
 
-def filled(text: str, known: dict[str, str]) -> str:
+def places(text: str, words: str, known: dict[str, str]) -> list[tuple[slice, str]]:
+    """Where the numbers of some words of a page stand, and their names, the last one first.
+
+    Raises LookupError where the words are not in the page exactly once.
+    """
+    first, *rest = re.split(r"\{(\w+)\}", words)
+    if "\n" in known[rest[0]]:  # a table: its head, and the lines below
+        pattern = "(" + re.escape(known[rest[0]].split("\n")[0]) + r"(?:\n\|[^\n]*)*)"
+    else:
+        literal = [r"\s+".join(map(re.escape, re.split(r"\s+", w))) for w in (first, *rest[1::2])]
+        pattern = re.sub(r"\\\.(?!\d)", r"\\.(?!\\d)", r"([^\n|]+?)".join(literal))  # a full stop
+    found = list(re.finditer(pattern, text))
+    if len(found) != 1:
+        raise LookupError(f"{words!r} is {len(found)} times in the page")
+    spans = [slice(*found[0].span(k + 1)) for k in range(len(rest[::2]))]
+    return list(zip(spans, rest[::2], strict=True))[::-1]
+
+
+def filled(text: str, page: list[str], known: dict[str, str]) -> str:
     """A page with the present numbers. Raises KeyError for a name that is not known."""
-
-    def fill(mark: re.Match) -> str:
-        name = mark[1]
-        lines = "\n" * ("\n" in known[name])  # a table has lines of its own
-        return f"<!-- {name} -->{lines}{known[name]}{lines}<!-- / -->"
-
-    return MARKED.sub(fill, text)
+    for words in page:
+        for span, name in places(text, words, known):
+            text = text[: span.start] + known[name] + text[span.stop :]
+    return text
 
 
 def fill_pages() -> None:
     """Write the present numbers into the pages that say others."""
     known = numbers()
-    for page in pages():
+    for page, words in pages().items():
         text = page.read_text(encoding="utf-8")
-        if (new := filled(text, known)) != text:
+        if (new := filled(text, words, known)) != text:
             page.write_text(new, encoding="utf-8")
 
 
@@ -165,7 +225,7 @@ def mm(length: pd.Series) -> str:
     return f"{1e3 * length.item():.3g} mm"
 
 
-SHOWN = {each.__name__: each for each in (digits, share, within, duration, mm)}
+SHOWN = {each.__name__: each for each in (digits, share, within, duration, mm, poisson_for)}
 """Functions by which docs/numbers.yaml shows numbers."""
 
 
@@ -173,14 +233,11 @@ SHOWN = {each.__name__: each for each in (digits, share, within, duration, mm)}
 
 
 def verdict(figure: str) -> str:
-    """How many of the thesis's statements on a figure hold here, in a sentence; empty where none
-    can be answered.
+    """What the thesis says of a figure and whether it is so here; empty where nothing can be
+    judged.
     """
-    good, count = holding(table("thesis_comparison")).get(figure, (0, 0))
-    if not count:
-        return ""
-    what = "statement of the thesis holds" if count == 1 else "statements of the thesis hold"
-    return f"{good} of {count} {what} here"
+    found = figure_verdicts(table("thesis_comparison"), reference()).get(figure)
+    return found.texts[0] if found else ""
 
 
 @number
@@ -227,20 +284,18 @@ def beliefs_missed():
 
 @number
 def hard_cases_rest():
-    """The others in words, by how they ended."""
+    """How the others ended, as Markdown."""
     words = {
-        "labours": "are right but took more cuts, factorisations or iterations than stable ones "
-        "may",
-        "admits its error": "say that they are wrong",
-        "fails cleanly": "stop (exit code 3) with the last state saved, the cause named and what "
-        "to relax",
+        "labours": "right, with more iterations or halved steps than a stable case may need",
+        "admits its error": "wrong, and the run says so",
+        "fails cleanly": "stops with its last state saved, the cause, and what to relax",
         "not done": "not done in two minutes",
-        "unsound": "end outside their limits and do not say so",
-        "breaks off": "break off",
+        "unsound": "outside its limits without a warning",
+        "breaks off": "breaks off",
     }
     counts = table("stability")["outcome"].value_counts()
-    ends = [f"{counts[outcome]} {text}" for outcome, text in words.items() if outcome in counts]
-    return f"Of the others {'; '.join(ends)}" if ends else "There are no others"
+    rows = [[text, str(counts.get(outcome, 0))] for outcome, text in words.items()]
+    return markdown_table("of the cases that are not stable | cases", rows)
 
 
 def swept(what: str, scenes: int, quantity: str) -> float:

@@ -201,6 +201,10 @@ DOCUMENTS = {
         "Unknowns",
         "What the thesis does not say of its pad, with priors: for `snakemake reconstruction`.",
     ),
+    "spheres": (
+        "Sizes of a dome",
+        "What `snakemake spheres` fits: lowest, first and highest value of each, in mm.",
+    ),
     "workflow": (
         "Configuration",
         "What the workflow simulates, draws and tabulates, and where it puts it.",
@@ -220,7 +224,7 @@ def language() -> Iterator[tuple[str, str]]:
             "specimen": "specimens/thesis",
             "sweep": "sweeps/example",
         }
-        example["reconstruction"] = "reconstruction/unknowns"
+        example |= {"reconstruction": "reconstruction/unknowns", "spheres": "spheres/dome"}
         whole = f"../../../config/{example.get(kind, 'thesis')}.yaml"
         parts = [f"# {title}", about, _section(schema)]
         for name, part in schema.get("$defs", {}).items():

@@ -15,9 +15,10 @@ from cysyk1999.config import WorkflowConfig
 from cysyk1999.figures.grammar import Figure
 from cysyk1999.figures.registry import FIGURES
 from cysyk1999.job import Job, Part, parts
-from cysyk1999.publishing.write import draw_study, join_tables
+from cysyk1999.publishing.tables import join_tables
+from cysyk1999.publishing.write import draw_study
 from cysyk1999.receptors.recordings import read_rates
-from cysyk1999.reference_data import ReferenceDataError, read_force_depth
+from cysyk1999.reference_data import EVIDENCE, ReferenceDataError, read_force_depth
 from fingerpad.documents import HIDE, Problem, SceneError, error_line, nearest
 from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 
@@ -64,6 +65,13 @@ class Project:
         Snakefile.
         """
         return path if Path(path).exists() else os.path.relpath(self.root / path)
+
+    @property
+    def reference(self) -> list[str]:
+        """The table of the thesis's numbers, and the evidence that says which of them the pad was
+        fitted to.
+        """
+        return [self.at(f"config/reference/{name}") for name in ("thesis_numbers.csv", EVIDENCE)]
 
     def _check(self) -> None:
         """SceneError, one line, for a scene, a figure or a table that there is not."""

@@ -260,31 +260,41 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
     return pd.DataFrame(values, index=table.lines)
 
 
+EVIDENCE = "reconstruction_evidence.csv"
+"""Beside the table of printed numbers: what the pad is inferred from. Its column thesis_ids names
+rows of that table.
+"""
+
+
 def read_reference(path: str | PathLike) -> pd.DataFrame:
     """Table of numbers printed in the thesis, indexed by id.
 
     Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled),
     form (value | range | axis | estimate | unlike: what is shown is not the model's | trend |
-    layout), tolerance, tick (the last of an axis but one, if simulated curves alone set its end),
-    role (input: stated by the thesis and by the scenes; count: of the model itself; calibrated: a
-    parameter was chosen by it; result; trend; empty for a layout), score (fitted: the pad was, or
-    is reconstructed, by it; none: earns nothing, the reason says why; empty: held out), same_as
-    (row of the same number of the same curve, which alone counts), source; and how this model
-    answers: measure (a name of `cysyk1999.measures.table.MEASURES`), at (its condition), of
-    (scenes), reason (of a known difference, or of not being judged). Raises ValueError for a
+    layout), tolerance, tick (the last of an axis but one, if simulated curves alone set its end; 0:
+    other traces set it too), role (input: stated by the thesis and by the scenes; count: of the
+    model itself; calibrated: one parameter was chosen by it; result; trend; empty for a layout),
+    score (none: earns nothing, the reason says why; or empty), same_as (row of the same number of
+    the same curve, which alone counts), source; and how this model answers: measure (a name of
+    `cysyk1999.measures.table.MEASURES`), at (its condition), of (scenes), reason (of a known
+    difference, or of not being judged). An end of which two readings are possible, ``1500 or
+    2000``, is the first in high and the second in or_high. A row that is named by the evidence
+    beside the table (`EVIDENCE`, where it is there) has the score fitted. Raises ValueError for a
     repeated id, an unknown kind, form, role, score or row.
     """
     words = ["role", "score", "same_as", "measure", "at", "of", "reason"]
-    text = dict.fromkeys(["id", "figure", "condition", "units", *words], str)
+    text = dict.fromkeys(["id", "figure", "condition", "units", "high", *words], str)
     table = pd.read_csv(path, dtype=text).set_index("id")
     table[words] = table[words].fillna("")
+    ends = table["high"].str.partition(" or ")[[0, 2]].apply(pd.to_numeric)
+    table["high"], table["or_high"] = ends[0], ends[2]
     if not table.index.is_unique:
         raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
     for column, allowed in {
         "kind": {"stated", "axis_range", "garbled"},
         "form": {"value", "range", "axis", "estimate", "unlike", "trend", "layout"},
         "role": {"input", "count", "calibrated", "result", "trend", ""},
-        "score": {"fitted", "none", ""},
+        "score": {"none", ""},
         "same_as": {*table.index[table["same_as"] == ""], ""},
     }.items():
         unknown = set(table[column]) - allowed
@@ -297,6 +307,9 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
     if len(wrong):
         role, form = table.loc[wrong[0], ["role", "form"]]
         raise ValueError(f"{path}: {wrong[0]}: role '{role}' does not go with form '{form}'")
+    if (evidence := Path(path).with_name(EVIDENCE)).exists():
+        named = pd.read_csv(evidence, dtype=str)["thesis_ids"].dropna().str.split().explode()
+        table.loc[table.index.isin(named) & table["score"].eq(""), "score"] = "fitted"
     return table
 
 

@@ -16,13 +16,18 @@ import fingerpad
 PACKAGES = ("fingerpad", "cysyk1999")
 REGISTERS = ("fingerpad.laws", "fingerpad.planning.effects")
 """Packages that import the files in them without naming one."""
+ONLY_LOOKED_AT = ("fingerpad.results", "fingerpad.picture")
+"""An import that no job comes to: ``plot()`` of a history is for people."""
 
 
 @cache
 def _imports() -> grimp.ImportGraph:
-    return grimp.build_graph(
+    graph = grimp.build_graph(
         *PACKAGES, exclude_type_checking_imports=True, cache_dir=".snakemake/grimp"
     )
+    importer, imported = ONLY_LOOKED_AT
+    graph.remove_import(importer=importer, imported=imported)
+    return graph
 
 
 @cache
@@ -50,9 +55,10 @@ def imported_sources(*modules: str) -> list[Path]:
 
     Notes
     -----
-    Imports inside functions count; those under ``TYPE_CHECKING`` do not. A module rests on what its
-    package imports, and on the YAML file of its name beside it. Who imports a verb from
-    ``fingerpad`` rests on the modules of all verbs; who imports one of `REGISTERS`, on its files.
+    Imports inside functions count, but not `ONLY_LOOKED_AT`; those under ``TYPE_CHECKING`` do not.
+    A module rests on what its package imports, and on the YAML file of its name beside it. Who
+    imports a verb from ``fingerpad`` rests on the modules of all verbs; who imports one of
+    `REGISTERS`, on its files.
     """
     found: set[str] = set()
     todo = set(modules)

@@ -9,9 +9,10 @@ Five functions do the work:
 - ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`.
 - ``respond(history)``: impulse rates and impulses of its receptors.
 
-``read_history`` and ``read_plan`` read what was written; ``write_history`` writes a
-history and ``summary`` sums it up. ``history.fingerpad`` is the accessor of a history. The errors
-to catch are here too. Each name is imported at its first use.
+``emulate(folder)`` fits an emulator to a sweep, which answers a scene in milliseconds, and
+``load_emulator(file)`` reads one. ``read_history`` and ``read_plan`` read what was written;
+``write_history`` writes a history and ``summary`` sums it up. ``history.fingerpad`` is the accessor
+of a history. The errors to catch are here too. Each name is imported at its first use.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from __future__ import annotations
 import importlib
 
 HOMES = {
+    "Emulator": "fingerpad.emulator.model",
     "MeshError": "fingerpad.specimen.pad",
     "NonConvergence": "fingerpad.mechanics.stepping",
     "NotFinished": "fingerpad.sweeps.engine",
@@ -30,12 +32,14 @@ HOMES = {
     "Scene": "fingerpad.scenes.scene",
     "SceneError": "fingerpad.documents",
     "SweepError": "fingerpad.sweeps.engine",
+    "emulate": "fingerpad.emulator.fitting",
+    "load_emulator": "fingerpad.emulator.model",
     "load_scene": "fingerpad.scenes.scene",
     "plan": "fingerpad.planning.plan",
     "read_history": "fingerpad.results",
     "read_plan": "fingerpad.planning.plan",
     "respond": "fingerpad.receptors.respond",
-    "simulate": "fingerpad.simulation",
+    "simulate": "fingerpad.healing",
     "summary": "fingerpad.results",
     "sweep": "fingerpad.sweeps.engine",
     "write_history": "fingerpad.results",

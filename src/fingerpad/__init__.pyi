@@ -1,4 +1,8 @@
 from fingerpad.documents import SceneError as SceneError
+from fingerpad.emulator.fitting import emulate as emulate
+from fingerpad.emulator.model import Emulator as Emulator
+from fingerpad.emulator.model import load_emulator as load_emulator
+from fingerpad.healing import simulate as simulate
 from fingerpad.mechanics.stepping import NonConvergence as NonConvergence
 from fingerpad.planning.plan import Plan as Plan
 from fingerpad.planning.plan import PlanError as PlanError
@@ -12,7 +16,6 @@ from fingerpad.results import summary as summary
 from fingerpad.results import write_history as write_history
 from fingerpad.scenes.scene import Scene as Scene
 from fingerpad.scenes.scene import load_scene as load_scene
-from fingerpad.simulation import simulate as simulate
 from fingerpad.specimen.outline import OutlineError as OutlineError
 from fingerpad.specimen.pad import MeshError as MeshError
 from fingerpad.sweeps.engine import NotFinished as NotFinished

@@ -1,4 +1,4 @@
-"""The command ``fingerpad``: plan, run or mesh a scene; plan or run a sweep.
+"""The command ``fingerpad``: plan, run or mesh a scene; plan, run or emulate a sweep.
 
 Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is
 wrong (one line on standard error: file, key, what is wrong, what is allowed); 3 the simulation
@@ -27,7 +27,9 @@ from typing import Any
 from rich.console import Console
 from rich.progress import TextColumn, TimeElapsedColumn
 
+from fingerpad.benchmark import command as benchmarks
 from fingerpad.documents import SceneError, read_yaml
+from fingerpad.emulator import command as emulators
 from fingerpad.files import (
     InUse,
     disk_is_full,
@@ -38,15 +40,16 @@ from fingerpad.files import (
     staged,
     unusable,
 )
+from fingerpad.healing import simulate
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.bounds import PlanError, percent
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.processes import progress_bar
 from fingerpad.receptors.recovery import ReceptorError
 from fingerpad.results import summary, write_history, write_vtu
+from fingerpad.revolved import SLICES
 from fingerpad.scenes.families import read_scene
 from fingerpad.scenes.scene import Scene, load_scene
-from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for, quality_of, write_pad
 from fingerpad.specimen.outline import OutlineError
 from fingerpad.specimen.pad import MeshError
@@ -194,12 +197,16 @@ def _parser() -> argparse.ArgumentParser:
 
     plan = command("plan", _plan, "say what would be simulated, why, and what it would cost")
     run = command("run", _run, "simulate a scene: history.nc, summary.json, plan.json")
+    scored = "predict published measurements of touch and score it, or score a file"
+    benchmarks.options(command("benchmark", _benchmark, scored))
     mesh = command("mesh", _mesh, "write the mesh a scene would be simulated on")
     sweep = command(
         "sweep",
         _sweep,
         "simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing",
     )
+    emulate = command("emulate", _emulate, "fit an emulator to a sweep that kept its histories")
+    explore = command("explore", _explore, "write a page to play with an emulator")
     is_set: dict[str, Any] = {"action": "store_true"}
     folder: dict[str, Any] = {"metavar": "DIR", "type": Path}
     count: dict[str, Any] = {"metavar": "N", "type": _cores, "default": 1}
@@ -211,13 +218,19 @@ def _parser() -> argparse.ArgumentParser:
     sweep("--force", **is_set, help="use DIR though it holds another sweep")
     fields = "also write fields for ParaView, in DIR/vtu: snapshots, or the last state"
     run("--vtu", **is_set, help=fields)
+    run("--revolved", **is_set, help="with --vtu: a body of revolution as a solid of half a turn")
     mesh_file = "mesh file, coordinates in mm"
     mesh("--out", metavar="FILE.msh", type=Path, required=True, help=mesh_file)
     sweep("--cores", **count, help="processes at a time (default: 1)")
     cluster = "a Snakemake profile instead of --cores, as workflow/profiles/slurm"
     sweep("--profile", metavar="DIR", help=cluster)
     sweep("--again", **is_set, help="also try scenes again that could not be simulated before")
-    for option in (run, sweep):
+    emulate("folder", metavar="SWEEP_DIR", type=Path, help="the folder of the sweep")
+    explore("emulator", metavar="FILE", type=Path, help="the file of the emulator")
+    file: dict[str, Any] = {"metavar": "FILE", "type": Path, "required": True}
+    emulate("--out", **file, help="the file of the emulator, such as pad.emulator")
+    explore("--out", **file, help="the page, such as explorer.html")
+    for option in (run, sweep, emulate):
         option("--quiet", **is_set, help="no progress bar, no closing line")
     for option in (plan, run, mesh):
         option("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
@@ -252,6 +265,11 @@ def _run(options: argparse.Namespace) -> int:
     out = options.out or Path("results") / options.scene.stem
     _check_writable(out, directory=True)
     scene, chosen = _prepare(options)
+    if options.revolved and not (options.vtu and scene.axisymmetric):
+        needs = "allowed: beside --vtu, of a scene with kinematics: axisymmetric"
+        raise SceneError(
+            f"{options.scene}: --revolved turns fields of a body of revolution; {needs}"
+        )
     unit = _force_unit(options.scene)
 
     with _folder(out, scene, chosen, options) as folder:
@@ -274,7 +292,7 @@ def _run(options: argparse.Namespace) -> int:
             write_history(dataset, stage / "history.nc")
             _write_json(totals, stage / "summary.json")
             if options.vtu:
-                write_vtu(dataset, stage / "vtu")
+                write_vtu(dataset, stage / "vtu", SLICES if options.revolved else 0)
 
         folder.write(results)
     if not options.quiet:
@@ -292,6 +310,26 @@ def _sweep(options: argparse.Namespace) -> int:
     except NotFinished as error:
         return _say(str(error), NOT_COMPLETED)
     return DONE
+
+
+def _benchmark(options: argparse.Namespace) -> int:
+    if options.out:
+        _check_writable(options.out, directory=True)
+    try:
+        benchmarks.benchmark(options)
+    except NonConvergence as error:
+        return _say(f"a measurement cannot be simulated: {error}", NOT_COMPLETED)
+    return DONE
+
+
+def _emulate(options: argparse.Namespace) -> None:
+    _check_writable(options.out, directory=False)
+    emulators.emulate_folder(options.folder, options.out, options.quiet)
+
+
+def _explore(options: argparse.Namespace) -> None:
+    _check_writable(options.out, directory=False)
+    emulators.explore(options.emulator, options.out)
 
 
 def _mesh(options: argparse.Namespace) -> None:
@@ -599,11 +637,18 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
     )
     return (
         f"depth {last['depth_mm']:.3g} mm, "
-        f"force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
+        f"force {force:#.3g} {unit} ({_force(last)}), "
         f"contact {last['contact_width_mm']:.3g} mm wide{gaps}; {run['steps']} steps, "
         f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s{compiled}; "
         f"{_error_line(totals)}; results in {directory}"
     )
+
+
+def _force(leg: dict[str, Any]) -> str:
+    """The force of a plane section by its length, of a body of revolution in newtons."""
+    if "force_N_per_m" in leg:
+        return f"{leg['force_N_per_m']:.3g} N/m"
+    return f"{leg['force_N']:.3g} N"
 
 
 def _error_line(totals: dict[str, Any]) -> str:

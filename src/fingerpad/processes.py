@@ -46,6 +46,28 @@ def progress_bar(
         yield partial(progress.update, progress.add_task(escape(name), total=total, **fields))
 
 
+@contextlib.contextmanager
+def told_in_a_notebook(
+    progress: Callable[[dict[str, Any]], None] | None,
+) -> Iterator[Callable[[dict[str, Any]], None] | None]:
+    """What is told of each step of a run: `progress`, or, if that is None in a notebook, a bar."""
+    if progress or not Console().is_jupyter:
+        yield progress
+        return
+    from IPython.display import ProgressBar  # who runs a notebook has it
+
+    bar = ProgressBar(100)
+    bar.display()
+
+    def after_step(state: dict[str, Any]) -> None:
+        done = int(100 * state["time_s"] / state["end_time_s"])
+        if done != bar.progress:
+            bar.progress = done
+
+    yield after_step
+    bar.progress = bar.total  # a run in which no time passes has no share of it
+
+
 def threads() -> int:
     """How many threads the process was given, by OMP_NUM_THREADS: one unless told otherwise."""
     given = os.environ.get("OMP_NUM_THREADS", "").split(",")[0]

@@ -9,7 +9,16 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parent
 
 
-BESIDE_A_RUN = ("__main__.py", "cli.py", "reference_solutions", "sweeps")
+BESIDE_A_RUN = (
+    "__main__.py",
+    "benchmark",
+    "cli.py",
+    "emulator",
+    "measures",
+    "picture.py",
+    "reference_solutions",
+    "sweeps",
+)
 """What a simulation does not use, or only its plan, which is kept with its result."""
 
 

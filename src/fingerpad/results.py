@@ -17,7 +17,7 @@ from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import meshio
 import numpy as np
@@ -28,10 +28,14 @@ from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.planning.plan_data import Plan
 from fingerpad.processes import threads
 from fingerpad.provenance import BESIDE_A_RUN, code_digest
+from fingerpad.revolved import revolved
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.pad import PadMesh
 from fingerpad.stimuli.motion import NO_TIME
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _OF_TIME = {
     "force": ("N/m", "normal force per contact length, compression positive"),
@@ -83,6 +87,11 @@ _OF_RECEPTORS = {
     "hydrostatic_pressure": ("Pa", "mean compressive stress, volumetric part"),
     "dilatation": ("1", "relative change of volume, det F - 1"),
 }
+OF_REVOLUTION = {
+    "contact_radius": ("time", "m", "contact radius"),
+    "contact_area": ("time", "m^2", "contact area, of the circle less its gaps"),
+}
+"""Name -> (dimension, unit, long name) of what only a history of a body of revolution has."""
 VARIABLES: dict[str, tuple[Any, str, str]] = {
     name: (dims, *about)
     for dims, group in (
@@ -146,15 +155,28 @@ def history_of(
     attributes
         Of the history; dictionaries and lists are kept as JSON.
     """
+    known = VARIABLES
+    if "contact_radius" in variables:
+        known = {name: _whole(*about) for name, about in (VARIABLES | OF_REVOLUTION).items()}
     data, places = (
         {name: _labelled(*known[name], values) for name, values in arrays.items()}
-        for known, arrays in ((VARIABLES, variables), (COORDINATES, coordinates))
+        for known, arrays in ((known, variables), (COORDINATES, coordinates))
     )
     texts = {
         name: json.dumps(value, sort_keys=True) if isinstance(value, (dict, list)) else value
         for name, value in attributes.items()
     }
     return _indexed(xr.Dataset(data, places, texts))
+
+
+def _whole(dims: Any, unit: str, long_name: str) -> tuple[Any, str, str]:
+    """What is said of a variable of a body of revolution: forces and energies are of all of it."""
+    unit = {"N/m": "N", "J/m": "J"}.get(unit, unit)
+    return (
+        dims,
+        unit,
+        long_name.replace(" per contact length", "").replace("over length", "over area"),
+    )
 
 
 def _labelled(dims: Any, unit: str, long_name: str, values: Any) -> tuple:
@@ -340,6 +362,12 @@ def _leg(
         "centre_lateral_displacement_mm": at_end("centre_lateral_displacement", 1e3),
         "stroke_distance_mm": at_end("stroke_distance", 1e3),
     }
+    if "contact_radius" in end:
+        entry = {name: value for name, value in entry.items() if not name.endswith("N_per_m")}
+        entry |= {
+            "contact_radius_mm": at_end("contact_radius", 1e3),
+            "contact_area_mm2": at_end("contact_area", 1e6),
+        }
     if len(places) > MOST_RECEPTORS:
         said = f"{len(places)} receptor points: their strain energies are in the history"
         return entry | {"receptors": said}
@@ -375,6 +403,8 @@ def _run(history: xr.Dataset) -> dict[str, Any]:
             "tolerance_missed": attributes["tolerance"],
             "runs": json.loads(attributes["runs"]),
         }
+    if "relaxed" in attributes:
+        out["relaxed"] = json.loads(attributes["relaxed"])
     discretisation = plan["discretisation"].items()
     out |= {name: value for name, value in discretisation if name.startswith("profile_")}
     if notes:
@@ -498,13 +528,18 @@ def read_history(path: str | Path) -> xr.Dataset:
     return _indexed(read_dataset(path, ("time", "leg", "force", "indentation_depth")))
 
 
-def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
+def write_vtu(history: xr.Dataset, directory: str | Path, slices: int = 0) -> list[Path]:
     """Write each full field of a history for ParaView.
 
     ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and
     traction on its skin (kPa) at nodes; layer, mean stress and what else the history holds of
     :data:`FIELDS` in elements. ``indenter_<k>.vtu`` is the outline of the stimulus.
     ``snapshots.pvd`` opens all of them as one film, ``snapshots.vtu.series`` the pad alone.
+
+    Parameters
+    ----------
+    slices
+        Of a body of revolution: turned by half a turn in so many cells; 0 is its section.
 
     Returns
     -------
@@ -525,6 +560,7 @@ def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
             line = np.column_stack([np.arange(len(outline) - 1), np.arange(1, len(outline))])
             meshes[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
         for part, (name, mesh) in enumerate(meshes.items()):
+            mesh = revolved(mesh, slices) if slices else mesh
             write_atomically(directory / name, partial(mesh.write, file_format="vtu"))
             parts.append(f'<DataSet timestep="{time!r}" part="{part}" file="{name}"/>')
     opening = '<VTKFile type="Collection" version="0.1"><Collection>'
@@ -633,7 +669,39 @@ class HistoryAccessor:
 
     def __repr__(self) -> str:
         sizes = ", ".join(f"{size} {name}" for name, size in self._history.sizes.items())
-        return f"<fingerpad accessor ({sizes}): plan, scene, force_N, errors, sel(depth, offset)>"
+        has = "plan, scene, force_N, errors, sel(depth, offset), plot()"
+        return f"<fingerpad accessor ({sizes}): {has}>"
+
+    def plot(self) -> Figure:
+        """The picture of the history, in mm, kPa and s: the section with the indenter, pressure on
+        the skin at the end of each leg, strain energy density at the receptors, their impulses.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            183 mm wide; ``figure.savefig("touch.pdf")`` writes it. Of many legs or receptors four
+            are shown.
+
+        Raises
+        ------
+        ImportError
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> from fingerpad import simulate
+        >>> history = simulate({
+        ...     "stimulus": {"shape": "cylinder", "curvature": "400 1/m"},
+        ...     "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "1 s"}],
+        ...     "accuracy": "draft",
+        ... })
+        >>> figure = history.fingerpad.plot()
+        >>> [ax.get_ylabel() for ax in figure.axes[:3]]
+        ['y (mm)', 'contact pressure (kPa)', 'strain energy density (kPa)']
+        """
+        from fingerpad.picture import draw_history  # only who looks at it rests on how it looks
+
+        return draw_history(self._history, self.scene.stimulus)
 
     def receptor(self, depth: float, offset: float = 0.0) -> xr.Dataset:
         """The old name of :meth:`sel`; it goes with the next version."""

@@ -20,6 +20,7 @@ from fingerpad.compiled import compiling
 from fingerpad.dense_output import at_outputs
 from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
+from fingerpad.mechanics.kinematics import KINEMATICS
 from fingerpad.mechanics.pressure import checkerboard, smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import Space
@@ -46,6 +47,7 @@ from fingerpad.planning.unbounded import (
     in_words,
     seen_corners,
 )
+from fingerpad.processes import told_in_a_notebook
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.recovery import ReceptorError
 from fingerpad.receptors.respond import respond
@@ -88,70 +90,25 @@ MAX_ENERGY_WARNING = 0.03
 MIN_DET_F_WARNING = 0.1
 #: Warn above this unevenness of pressure from node to node (r.m.s. over the peak).
 MAX_UNEVEN_WARNING = 0.15
+#: How often a step that failed is gone on with from its last good state.
+PATIENCE = 1
 #: Bulk over shear modulus above which the tangent needs double precision.
 MAX_BULK_SINGLE = 200.0
 
 
-def simulate(
+def solve(
     scene: Scene | str | Path | Mapping[str, Any],
     plan: Plan | None = None,
     mesh: PadMesh | None = None,
     progress: Callable[[dict[str, Any]], None] | None = None,
     fields: bool = False,
 ) -> xr.Dataset:
-    """Simulate a scene.
-
-    A run that misses the tolerance it was asked for is refined and run again, a few times at most,
-    unless the scene says ``once`` or a mesh is given. The history describes the last run.
-
-    Parameters
-    ----------
-    scene : Scene, path or dict
-        The scene, checked or as a document.
-    plan : Plan, optional
-        How it is solved (default: ``fingerpad.plan(scene)``).
-    mesh : PadMesh, optional
-        Mesh of the whole pad (default: built or read as the plan says).
-    progress : callable, optional
-        Called after each step with a dict of time_s, end_time_s, contact_width_mm, iterations,
-        cutbacks.
-    fields : bool
-        Whether to keep full fields of strain energy, strain and stress, at the scene's snapshots or
-        of the last state.
-
-    Returns
-    -------
-    xarray.Dataset
-        The history of the whole pad, in SI (see :mod:`fingerpad.results`).
-
-    Raises
-    ------
-    SceneError
-        The scene is wrong.
-    PlanError, MeshError, OutlineError
-        It cannot be planned or meshed; nothing was solved.
-    ReceptorError
-        A receptor lies outside the soft tissue.
-    NonConvergence
-        A step failed for good. Its ``dataset`` is the history up to the last converged step; a
-        KeyboardInterrupt has the same, if a step had converged.
-
-    Examples
-    --------
-    >>> press = {
-    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
-    ...     "motion": [{"press_to_force": "20 gf"}],
-    ...     "accuracy": "draft",
-    ... }
-    >>> history = simulate(press)
-    >>> round(1e3 * float(history.contact_width[-1]), 1)
-    2.7
-    >>> history.fingerpad.force_N.values.round(3).tolist()
-    [0.0, 0.196]
+    """Simulate a scene as it is planned: :func:`fingerpad.healing.simulate`, which has the same
+    parameters and errors, without its answers to trouble.
     """
     scene = load_scene(scene)
     chosen = plan or _plan(scene)
-    with threadpool_limits(1):
+    with threadpool_limits(1), told_in_a_notebook(progress) as progress:
         history = Simulation(scene, chosen, mesh, fields).run(progress)
         runs = [_outcome(history)]
         why_not = "a mesh was given" if mesh is not None else ""
@@ -166,6 +123,7 @@ def simulate(
             if isinstance(following, str):
                 why_not = following
                 break
+            following = replace(following, relaxed=chosen.relaxed)
             try:
                 again = Simulation(scene, following, None, fields).run(progress)
             except NonConvergence:
@@ -201,7 +159,10 @@ class Simulation:
         self.scene, self.plan, self.parts = scene, plan, plan.parts(scene)
         self.whole = (mesh or mesh_for(scene, plan)).elevated(plan.element)
         self.mesh = self.whole.right_half() if self.parts.half else self.whole
-        self.share = 0.5 if self.mesh.half else 1.0
+        self.kinematics, self.sides = KINEMATICS[scene.kinematics], 2 if self.mesh.half else 1
+        if scene.axisymmetric:  # half the section is the whole body
+            self.whole = self.mesh
+        self.share = 1.0 if scene.axisymmetric else 1 / self.sides
         specimen = self.parts.scene.specimen
         self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
         self.profile = scene.stimulus.at(plan.surface.smoothing, plan.contact_edge)
@@ -219,11 +180,18 @@ class Simulation:
             self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None)
             observers.append(self.fields)
         soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
-        settings = NewtonSettings(single=soft)
+        settings = NewtonSettings(single=soft and not plan.relaxed.precise)
         if plan.newton_tolerance:
             settings = replace(settings, force_tolerance=plan.newton_tolerance)
         self.stepper = QuasiStatic(
-            self.body, self.skin, self.profile, settings, observers, friction=self.parts.friction
+            self.body,
+            self.skin,
+            self.profile,
+            settings,
+            observers,
+            friction=self.parts.friction,
+            patience=PATIENCE if scene.relaxing else 0,
+            most=plan.relaxed.most_iterations,
         )
         self._require_room()
 
@@ -234,7 +202,8 @@ class Simulation:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
-        space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element)
+        kind = mesh.element, fixed, plan.element, self.kinematics
+        space = Space(mesh.points, mesh.cells, *kind)
         layers = [specimen.material(name) for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers],
@@ -259,6 +228,8 @@ class Simulation:
             grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij")
         )
         ridges = self.parts.ridges
+        if self.scene.axisymmetric:
+            offset = np.abs(offset)
         if ridges is not None and ridges.outer is not None:
             points = below_outline(self.scene.specimen.outline, depth, offset)
         else:
@@ -310,7 +281,7 @@ class Simulation:
             )
 
     def run(self, progress) -> xr.Dataset:
-        """The history; ``progress`` as in :func:`simulate`."""
+        """The history; ``progress`` as in :func:`fingerpad.healing.simulate`."""
         states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
         done: list[Record] = []
         # one a leg and time: of the increments of a steady leg, all at one time, the last
@@ -395,7 +366,7 @@ class Simulation:
         stroke = stroke_of(self.scene, self.profile.uneven) if strokes else None
         legs, judged = [], []
         for k in ends:
-            few = np.count_nonzero(records[k].nodal_force) / self.share < 4
+            few = self.sides * np.count_nonzero(records[k].nodal_force) < 4
             error = max(self._error_at(width[k], stroke), lost, 0.5 if few else 0.0)
             largest = int(np.argmax(force[: k + 1]))
             if force[k] < UNLOADED_FORCE * force[largest] and width[k] < width[largest]:
@@ -419,7 +390,8 @@ class Simulation:
         plan, bumpy = self.plan, self.scene.stimulus.irregular
         half_width = min(width / 2, plan.contact.narrowest or np.inf) or NO_CONTACT_WIDTH
         steps = plan.states_per_leg if plan.timed or plan.strokes else None
-        errors = ContactErrors(RULES, half_width, steps, stroke, bumpy)
+        turned = self.scene.axisymmetric
+        errors = ContactErrors(RULES, half_width, steps, stroke, bumpy, turned)
         if plan.mesh_size is None:
             by_quantity = errors.on_own_mesh(plan.element, plan.contact_edge, plan.receptor_height)
             error = max(by_quantity.values())
@@ -492,7 +464,11 @@ class Simulation:
         averages.
         """
         doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
+        self.doubts = doubts[:]
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
+        if resumed := self.stepper.resumed:
+            when = " and ".join(f"t = {time:.6g} s" for time in resumed)
+            doubts.append(f"broke off after {when}, and went on from there in smaller steps")
         notes = [
             *doubts,
             *self.scene.stimulus.notes,
@@ -534,18 +510,29 @@ class Simulation:
         return self.body.bulk * mean
 
     def _width(self, record, gaps=0.0) -> float:
-        """Width (m) of the contact of the whole pad, less ``gaps`` (m) of the part solved."""
+        """Width (m) of the contact of the whole pad, less ``gaps`` (m) of the part solved; the
+        diameter of a round one.
+        """
         left, right = (0.0, record.edges[1]) if self.mesh.half else record.edges
-        return float(max(np.nan_to_num(right - left - gaps), 0.0) / self.share)
+        return float(max(np.nan_to_num(right - left - gaps), 0.0) * self.sides)
 
-    def _gaps(self, record) -> float:
-        """Length (m) of skin within the contact that does not touch."""
+    def _gaps(self, record, length) -> float:
+        """Length (m, or m^2: of what is in ``length``) of skin in the contact that does not
+        touch.
+        """
         on = np.flatnonzero(record.nodal_force > 0)
         if not len(on):
             return 0.0
         inside = slice(0 if self.mesh.half else on[0], on[-1])
-        length = np.where(record.nodal_force[inside] > 0, 0.0, record.length[inside])
-        return float(length.sum())
+        return float(np.where(record.nodal_force[inside] > 0, 0.0, length[inside]).sum())
+
+    def _ways(self, record) -> np.ndarray:
+        """Length (ns,) m of skin along the section that belongs to each node."""
+        if not self.scene.axisymmetric:
+            return record.length
+        skin = self.stepper.points[self.skin.nodes] + record.displacement[self.skin.nodes]
+        half = np.hypot(*np.diff(skin, axis=0).T) / 2
+        return np.append(half, 0.0) + np.append(0.0, half)
 
     def _row(self, record: Record, unfold: _Unfolding, apex: int) -> dict[str, Any]:
         """What a history holds of one state, for the whole pad."""
@@ -558,7 +545,7 @@ class Simulation:
             "tangential_force": 0.0 if half else record.tangential_force,
             "indentation_depth": record.depth,
             "contact_width": self._width(record),
-            "touching_width": self._width(record, self._gaps(record)),
+            "touching_width": self._width(record, self._gaps(record, self._ways(record))),
             "centre_pressure": pressure[apex],
             "peak_pressure": pressure.max(),
             "centre_lateral_displacement": lateral[apex],
@@ -579,6 +566,10 @@ class Simulation:
             "skin_displacement_x": lateral,
             "skin_displacement_y": unfold.skin(u[:, 1]),
         }
+        if self.scene.axisymmetric:
+            radius = row["contact_width"] / 2
+            area = np.pi * radius**2 - self._gaps(record, length)
+            row |= {"contact_radius": radius, "contact_area": max(area, 0.0)}
         if record.state is not None:
             row["tangential_traction"] = unfold.skin(record.tangential / length, odd=True)
             row["slip"] = unfold.skin(record.slip, odd=True)
@@ -654,6 +645,8 @@ class Simulation:
             }
             outputs = [_last(out["leg"], times, *key) for key in snapshots]
             add_snapshots(history, history["time"].values[outputs], self.whole, fields)
+        if self.doubts:
+            history.attrs["doubts"] = json.dumps(self.doubts)
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
             history = history.merge(respond(history, wanted))

@@ -8,6 +8,7 @@ from meshes import KIND, mapped
 from problems import BODIES, boundary, close
 
 from fingerpad.laws import LAWS, NEO_HOOKE, assign
+from fingerpad.mechanics.kinematics import AXISYMMETRIC, PLANE_STRAIN
 from fingerpad.mechanics.linear_solver import condensation
 from fingerpad.mechanics.space import Space
 from fingerpad.reference_solutions.weak_form import WeakForm, isochoric_stress
@@ -41,13 +42,13 @@ def bent(s):
     return np.stack([r * np.cos(angle), r * np.sin(angle)], 1)
 
 
-def parts(element, strain, law="neo_hooke", prony=None, **more):
+def parts(element, strain, law="neo_hooke", prony=None, kinematics=PLANE_STRAIN, **more):
     """Body of two layers (of finite strain: the inner one neo-Hooke), and the weak form on its
     mesh.
     """
     mesh = mapped(2, 2, bent, KIND[element], region=lambda centre: (centre[:, 0] > 0.5).astype(int))
     fixed = boundary(mesh, "bottom")
-    space = Space(mesh.points, mesh.cells, mesh.element, fixed, element)
+    space = Space(mesh.points, mesh.cells, mesh.element, fixed, element, kinematics)
     laws = assign([(NEO_HOOKE, ()), (LAWS[law], SLOPES[law][1])], mesh.region)
     body = BODIES[strain](space, SHEAR[mesh.region], BULK[mesh.region], prony, laws=laws, **more)
     mu = SHEAR[mesh.region][:, None]
@@ -58,7 +59,10 @@ def parts(element, strain, law="neo_hooke", prony=None, **more):
         return tuple(np.where(mesh.region[:, None] == 0, *pair) for pair in chosen)
 
     extra = more.get("pointwise", 0.0) * mu[:, 0]
-    return body, WeakForm(space.points, space.cells, element, BULK[mesh.region], extra), slopes, mu
+    form = WeakForm(
+        space.points, space.cells, element, BULK[mesh.region], extra, kinematics is AXISYMMETRIC
+    )
+    return body, form, slopes, mu
 
 
 def displacement(points, size=0.15):
@@ -93,14 +97,14 @@ def second_step(body, prony):
     return early, factor, left
 
 
-def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
+def check_finite(element, law="neo_hooke", prony=None, kinematics=PLANE_STRAIN, change=1.0, **more):
     """Force and tangent at a large displacement with another pressure in the tangent; with
     branches, in a second step.
     """
-    body, form, slopes, mu = parts(element, "finite", law, prony, **more)
+    body, form, slopes, mu = parts(element, "finite", law, prony, kinematics, **more)
     points, space = body.space.points, body.space
     early, factor, left = second_step(body, prony)
-    f = np.eye(2).reshape(2, 2, 1, 1) + form.field(early).grad
+    f = form.deformation(early)
     elastic = np.einsum("ij...,jk...->ik...", np.linalg.inv(f.T).T, isochoric_stress(f, slopes))
     history = left * elastic
     u = displacement(points)
@@ -142,9 +146,9 @@ def test_finite_strain_with_unprojected_stiffness(element, must_fail):
     must_fail(check_finite, element, pointwise=5.0, change=1 + 1e-8)
 
 
-def check_small(element, law="neo_hooke", prony=None, change=1.0):
+def check_small(element, law="neo_hooke", prony=None, kinematics=PLANE_STRAIN, change=1.0):
     """Small strain: force and tangent, whatever the law; with branches, in a second step."""
-    body, form, _, mu = parts(element, "small", law, prony)
+    body, form, _, mu = parts(element, "small", law, prony, kinematics)
     early, factor, left = second_step(body, prony)
     shape = form.linear_stiffness(mu[:, 0]) - form.linear_stiffness(0 * mu[:, 0])
     history = left * (shape @ early.ravel()).reshape(early.shape)
@@ -168,3 +172,14 @@ def test_small_strain(element, law, must_fail):
 def test_small_strain_with_branches(element, must_fail):
     check_small(element, prony=THESIS)
     must_fail(check_small, element, prony=THESIS, change=1 + 1e-8)
+
+
+@pytest.mark.parametrize(
+    ("element", "law"), [("Q2P1", "neo_hooke"), ("P2B", "neo_hooke"), ("Q1P0", "yeoh")]
+)
+def test_a_body_of_revolution(element, law, must_fail):
+    """With R at the points themselves, in a second step with branches."""
+    check_finite(element, law, THESIS, AXISYMMETRIC, pointwise=5.0)
+    must_fail(check_finite, element, law, THESIS, AXISYMMETRIC, pointwise=5.0, change=1 + 1e-8)
+    check_small(element, prony=THESIS, kinematics=AXISYMMETRIC)
+    must_fail(check_small, element, prony=THESIS, kinematics=AXISYMMETRIC, change=1 + 1e-8)

@@ -1,22 +1,27 @@
-"""The package as `pip install .` makes it, away from the source tree."""
+"""The package as `pip install` makes it from its source distribution, away from the source tree."""
 
 import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).resolve().parents[2]
 PARTS = ("config", "src", "workflow", "LICENSE", "README.md", "pyproject.toml", "setup.py")
+PARTS += ("MANIFEST.in",)
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory) -> Path:
-    """The folder that a wheel, built from a copy of the tree, was installed into."""
+    """The folder that a wheel was installed into, built from the source distribution of a copy of
+    the tree.
+    """
     tree, target = tmp_path_factory.mktemp("tree"), tmp_path_factory.mktemp("installed")
     for name in PARTS:
         if (ROOT / name).is_dir():
@@ -25,6 +30,11 @@ def installed(tmp_path_factory) -> Path:
             )
         else:
             shutil.copy(ROOT / name, tree / name)
+    code = "import sys; from setuptools.build_meta import build_sdist; build_sdist(sys.argv[1])"
+    made = tmp_path_factory.mktemp("made")
+    subprocess.run([sys.executable, "-c", code, made], cwd=tree, check=True, capture_output=True)
+    shutil.rmtree(tree)
+    (archive,) = made.iterdir()
     pip = [
         sys.executable,
         "-m",
@@ -35,11 +45,10 @@ def installed(tmp_path_factory) -> Path:
         "--no-index",
     ]
     subprocess.run(
-        [*pip, "--no-build-isolation", "--no-deps", "--target", target, tree],
+        [*pip, "--no-build-isolation", "--no-deps", "--target", target, archive],
         check=True,
         capture_output=True,
     )
-    shutil.rmtree(tree)
     return target
 
 
@@ -115,3 +124,14 @@ def test_a_specimen_of_ones_own_is_found_beside_the_built_in_ones(elsewhere, tmp
 
 
 LAYERS = ("epidermis", "dermis", "fat")
+
+
+def test_the_conda_recipe_names_the_package_s_own_version_and_libraries():
+    recipe = yaml.safe_load((ROOT / "conda" / "recipe.yaml").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert recipe["context"]["version"] == project["version"]
+    needed = {
+        line.replace(" ", "").removeprefix("python-") for line in recipe["requirements"]["run"]
+    }
+    python = "python" + project["requires-python"]
+    assert needed == {python, *project["dependencies"]}

@@ -1,9 +1,10 @@
 """Compile the element loops into the cache: once at set-up, instead of in the first simulations."""
 
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from fingerpad import load_scene, simulate
+from fingerpad.processes import progress_bar
 from fingerpad.scenes.scene import Bar, Discretisation, Flat, PressToForce, Slide, Wavy
 
 SCENE = load_scene(Path("config/scenes/ramp40_k210.yaml"))
@@ -27,9 +28,19 @@ def compiled(changes):
         simulate(SCENE.model_copy(update=update))
 
 
+def main():
+    """Compile, with a bar on a terminal."""
+    with progress_bar("compiling", False, total=len(CHANGES)) as show:
+        try:
+            with ProcessPoolExecutor(len(CHANGES)) as pool:
+                tasks = [pool.submit(compiled, changes) for changes in CHANGES]
+                for done, task in enumerate(as_completed(tasks), 1):
+                    task.result()
+                    if show:
+                        show(completed=done)
+        except OSError:  # a machine without shared memory, as some containers: one after the other
+            list(map(compiled, CHANGES))
+
+
 if __name__ == "__main__":
-    try:
-        with ProcessPoolExecutor(len(CHANGES)) as pool:
-            list(pool.map(compiled, CHANGES))
-    except OSError:  # a machine without shared memory, as some containers: one after the other
-        list(map(compiled, CHANGES))
+    main()

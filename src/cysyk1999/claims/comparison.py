@@ -9,9 +9,11 @@ Every row has a role. Only a `result` and a `trend` speak for the model: an `inp
 thesis states and the scenes repeat, a `count` is of the model itself, and what is `calibrated` was
 used to choose a parameter.
 
-What speaks for the model is scored by whether it was held out: a row that the pad was fitted by
-earns less than one that it never saw. Rows that repeat another's number count once, those that hold
-by construction or are nobody's claim not at all.
+What speaks for the model is scored by whether it was held out: a row that the pad was fitted to
+earns less than one that it never saw. Rows that repeat another's number count once. Those that hold
+by construction, that a parameter was chosen by, or that are nobody's claim do not count.
+
+Stated numbers, ranges, axes and trends (`KINDS`) are counted apart.
 
 A row that is outside says by how much, the reason as far as runs tell it, and what the sensitivity
 runs make of it.
@@ -77,7 +79,7 @@ def thesis_comparison(
     """
     reference = read_reference(reference_csv)
     rows = [
-        _row(entry, fine, instead, reference)
+        judged_row(entry, fine, instead, reference)
         for _, entry in reference.iterrows()
         if entry["form"] != "layout"
     ]
@@ -86,46 +88,44 @@ def thesis_comparison(
     return table
 
 
+KINDS = {"value": "stated numbers", "range": "ranges", "axis": "axes", "trend": "trends"}
+"""Kinds of statements, which are counted apart, and their plurals."""
 SCORES = ("fitted", "held out")
 
 
 def score_of(entry: pd.Series) -> str:
     """What a row counts among: fitted, held out, or nothing (empty)."""
-    if (
-        entry["role"] not in ("result", "trend", "calibrated")
-        or entry["score"] == "none"
-        or entry["same_as"]
-    ):
+    given = entry["role"] not in ("result", "trend") or entry["form"] not in KINDS
+    if given or entry["score"] == "none" or entry["same_as"]:
         return ""
-    return "fitted" if entry["score"] == "fitted" or entry["role"] == "calibrated" else "held out"
+    return entry["score"] or "held out"
+
+
+def judged_rows(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
+    """The rows of a comparison that are judged, each with its `kind` (a key of `KINDS`), its
+    `score` and whether it `agrees`.
+    """
+    rows = table[table["verdict"].ne("not_comparable") & table["id"].isin(reference.index)]
+    return rows.assign(
+        kind=rows["id"].map(reference["form"]),
+        score=rows["id"].map(reference.apply(score_of, axis=1)),
+        agrees=rows["verdict"].isin(AGREES),
+    )
 
 
 def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
-    """How many rows agree with the thesis: a row for each kind (value or range, axis, trend) and
-    score, and both scores together.
+    """How many rows agree with the thesis: a row for each kind and score, and both scores together.
 
     Columns kind, score, agree, judged. Rows that are not comparable are not judged.
     """
-    form = table["id"].map(reference["form"])
-    kind = form.where(form.isin(("axis", "trend")), "value or range")
-    score = table["id"].map(reference.apply(score_of, axis=1))
-    judged = table["verdict"].ne("not_comparable") & score.ne("")
-    agree = table["verdict"].isin(AGREES)
-    rows = []
-    for each in ("value or range", "axis", "trend"):
-        for name in (*SCORES, "all"):
-            chosen = judged & kind.eq(each) & (score.eq(name) | (name == "all"))
-            rows.append((each, name, int((chosen & agree).sum()), int(chosen.sum())))
-    return pd.DataFrame(rows, columns=["kind", "score", "agree", "judged"])
-
-
-def holding(table: pd.DataFrame) -> dict[str, tuple[int, int]]:
-    """Of each figure how many of the thesis's statements hold here, results and trends, and of how
-    many that can be judged.
-    """
-    rows = table[table["role"].isin(("result", "trend")) & table["verdict"].ne("not_comparable")]
-    agree = rows["verdict"].isin(AGREES).groupby(rows["figure"]).agg(["sum", "size"])
-    return {figure: (int(good), int(count)) for figure, good, count in agree.itertuples()}
+    rows = judged_rows(table, reference)
+    counts = []
+    for kind in KINDS:
+        for score in (*SCORES, "all"):
+            of = SCORES if score == "all" else (score,)
+            agrees = rows["agrees"][rows["kind"].eq(kind) & rows["score"].isin(of)]
+            counts.append((kind, score, int(agrees.sum()), len(agrees)))
+    return pd.DataFrame(counts, columns=["kind", "score", "agree", "judged"])
 
 
 def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
@@ -135,26 +135,26 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
     counted = scores(table, reference).set_index(["kind", "score"])
     counts = counted["agree"].astype(str) + " of " + counted["judged"].astype(str)
 
-    def told(kind: str) -> str:
+    def told(kind: str, ends: str) -> str:
         of = counts[kind]
-        return f"{of['held out']} (fitted {of['fitted']}, all {of['all']})"
+        return f"{of['held out']} {KINDS[kind]} {ends} (fitted {of['fitted']}, all {of['all']})"
 
     given = table[table["role"].isin(GIVEN) & table["verdict"].ne("not_comparable")]["verdict"]
+    of = reference.loc[reference.index.intersection(table["id"])]
     return (
-        f"**Held out: {told('value or range')} values and ranges of the thesis are met; "
-        f"{told('axis')} axes of its figures are "
-        f"filled, their largest curve between the last two ticks; {told('trend')} trends hold.** "
+        f"**Held out: {told('value', 'are met')}; {told('range', 'are met')}; "
+        f"{told('axis', 'are filled, their largest curve between the last two ticks')}; "
+        f"{told('trend', 'hold')}.** "
         f"Not counted: {given.isin(('inside', 'plausible')).sum()} of {len(given)} inputs and "
-        "counts are as in the thesis; "
-        f"{table['id'].map(reference['same_as']).ne('').sum()} rows repeat another's number; "
-        f"{table['id'].map(reference['score']).eq('none').sum()} trends hold by construction or "
-        "are not the thesis's own; "
-        f"{table['id'].map(reference['form']).eq('unlike').sum()} rows show recordings or cannot "
-        "be read."
+        f"counts are as in the thesis; {of['role'].eq('calibrated').sum()} numbers chose a "
+        f"parameter; {of['same_as'].ne('').sum()} rows repeat another's number; "
+        f"{of['score'].eq('none').sum()} rows hold by construction or are not the thesis's own; "
+        f"{of['form'].eq('unlike').sum()} rows show recordings or cannot be read."
     )
 
 
-def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataFrame) -> dict:
+def judged_row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataFrame) -> dict:
+    """A row of the comparison, columns `COLUMNS`, of a row of the reference table."""
     row = {"id": entry.name} | {
         k: entry[k] for k in ("figure", "quantity", "condition", "role", "units")
     }
@@ -165,13 +165,15 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
             trend = TRENDS[entry.name](fine)
             row["simulated"] = significant(trend.shown, 4)
             row["verdict"] = "trend_holds" if trend.holds else "trend_fails"
-            return row | {"note": joined(REASONS.get(entry["reason"], ""), trend.note)}
+            note = joined(REASONS.get(entry["reason"], ""), trend.note, trend.parted)
+            return row | {"note": note}
         number, value, errors, verdict, *notes = judged(entry, fine, instead)
     except KeyError as missing:
         why = REASONS["subjects"] if entry["reason"] == "subjects" else missing.args[0]
         return row | {"verdict": "not_comparable", "note": f"not simulated: {why}"}
     outside = verdict == "outside"
-    if outside or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
+    unjudged = entry["form"] in ("estimate", "unlike") or entry["score"] == "none"
+    if outside or unjudged or entry["reason"] == "panels":
         notes.append(reason(entry["reason"], fine, number))
     if entry["role"] not in GIVEN:
         if outside:

@@ -11,7 +11,7 @@ import pandas as pd
 
 from cysyk1999.claims.comparison import PARTS, summary
 from cysyk1999.claims.verdicts import significant
-from cysyk1999.publishing.write import markdown
+from cysyk1999.publishing.tables import markdown
 
 CHAPTERS = {
     "3": "the specimen and what it was checked by",

@@ -3,18 +3,20 @@
 
 ``of`` names scenes, or sets of them (`SETS`), and may begin with what is made of several numbers:
 ``largest of`` (left out: the same), ``least of``, ``mean of``, ``sum of`` or ``number of`` (how
-many were simulated). ``at`` is the measure's condition; left out, all of its conditions count.
+many were simulated). ``each of`` names scenes of which the thesis leaves open which is meant:
+each is judged, and the hardest verdict stands. ``at`` is the measure's condition; left out, all of
+its conditions count.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
-from cysyk1999.claims.verdicts import judge
+from cysyk1999.claims.verdicts import hardest
 from cysyk1999.measures.errors import Errors
 from cysyk1999.measures.runs import (
     CYLINDERS,
@@ -52,6 +54,7 @@ MADE: dict[str, Callable[[list[float]], float]] = {
     "mean": np.mean,
     "sum": sum,
     "number": len,
+    "each": max,
 }
 
 
@@ -85,6 +88,13 @@ class Number:
         scenes = tuple(scene for word in names.split() for scene in SETS.get(word, (word,)))
         return cls(name, row["at"], made, scenes)
 
+    @property
+    def readings(self) -> list[Number]:
+        """The numbers that may be meant."""
+        if self.made != "each":
+            return [self]
+        return [replace(self, made="largest", scenes=(scene,)) for scene in self.scenes]
+
     def __call__(self, measures: Measures) -> float:
         return float(MADE[self.made](list(self._values(measures))))
 
@@ -112,13 +122,16 @@ def numbers(reference: pd.DataFrame) -> dict[str, Number]:
 def judged(
     entry: pd.Series, fine: Measures, instead: Instead
 ) -> tuple[Number, float, Errors, str, str]:
-    """A row's number, its value, its errors, its verdict and how far outside it is.
+    """A row's number, its value, its errors, its verdict and how far outside it is; of several that
+    may be meant the one with the hardest verdict.
 
     What goes into the simulations, and what a scene alone tells, has no error. Raises KeyError for
     what was not simulated.
     """
     number = Number.of(entry)
-    value, errors = number(fine), Errors(0.0, 0.0, 0.0)
+    found = number.readings
+    values, errors = [each(fine) for each in found], [Errors(0.0, 0.0, 0.0)] * len(found)
     if entry["role"] not in GIVEN and MEASURES[number.measure].of != "scene":
-        errors = instead.errors(number, value)
-    return number, value, errors, *judge(value, errors.total, entry)
+        errors = [instead.errors(*each) for each in zip(found, values, strict=True)]
+    k, *verdict = hardest(values, [error.total for error in errors], entry)
+    return found[k], values[k], errors[k], *verdict

@@ -1,129 +1,144 @@
-"""What the thesis says of a figure and whether it is so here, in a line: of the rows of the
-comparison that are the figure's own.
+"""What the thesis says of a figure and whether it is so here: one verdict a figure, of the rows of
+the comparison that are the figure's own.
 
-The line that speaks is the first trend that fails, else the first stated number that is missed,
-else a trend or a number that holds, else the range of an axis; the others are counted. What the pad
-was fitted to speaks, as such, where nothing else does.
+It holds where all of them hold, fails where all fail, and else holds in part; the parts are named.
+A number that another figure shows too speaks for both. What a parameter was chosen by does not
+speak; of what holds by construction that is said, where nothing else is.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import pandas as pd
 
-from cysyk1999.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
-from cysyk1999.claims.rows import judged
-from cysyk1999.claims.trends import TRENDS
-from cysyk1999.claims.verdicts import digits, joined
+from cysyk1999.claims.comparison import judged_row, judged_rows
 from cysyk1999.measures.table import Instead, Measures
+
+LEADS = {
+    "holds": "Thesis: holds here",
+    "fails": "Thesis: fails here",
+    "partly": "Thesis: holds here in part",
+    "not judged": "Thesis: holds by construction, not judged",
+}
+"""Verdicts on a figure, and how a sentence on it begins."""
 
 
 @dataclass(frozen=True)
 class Said:
-    """A statement of the thesis and its verdict: `ids` names it and counts the figure's others;
-    `verdict` is holds or fails.
+    """A verdict on a figure.
+
+    Attributes
+    ----------
+    verdict : a key of `LEADS`.
+    holds, fails : the parts of what the thesis says, named.
+    agree, judged, fitted : how many statements hold, of how many, and how many of these the pad was
+        fitted to.
     """
 
-    ids: str
-    words: str
-    condition: str
     verdict: str
-    number: str
-    detail: str
+    holds: tuple[str, ...]
+    fails: tuple[str, ...]
+    agree: int = 0
+    judged: int = 0
+    fitted: int = 0
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """It in words: whole, without what holds, without details, and without the parts."""
+        count = "" if self.judged < 2 else f", {self.agree} of {self.judged}"
+        whole = LEADS[self.verdict] + count * (self.verdict == "partly")
+        of = "it" if self.judged == 1 else f"{self.fitted} of them"
+        of = "all of them" if self.judged == self.fitted > 1 else of
+        fitted = f" The pad was fitted to {of}." * (self.fitted > 0)
+        fails = bare = holds = ""
+        if self.verdict == "partly":
+            fails, holds = f" Fails: {'; '.join(self.fails)}.", f" Holds: {'; '.join(self.holds)}."
+            bare = re.sub(r" \([^()]*\)", "", fails)
+        elif self.fails or self.holds:
+            whole += f": {'; '.join(self.fails or self.holds)}"
+        short = re.sub(r" \([^()]*\)", "", whole)
+        found = (
+            f"{whole}.{fails}{holds}{fitted}",
+            f"{whole}.{fails}{fitted}",
+            f"{short}.{bare}",
+            LEADS[self.verdict] + f"{count}.",
+        )
+        return tuple(dict.fromkeys(found))
 
 
 def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame) -> Said | None:
-    """What speaks for a figure of a number (``4-10``), as far as the measures know its scenes; None
-    if nothing does.
+    """The verdict on a figure of a number (``4-10``), as far as the measures know its scenes; None
+    where the thesis says nothing of it that can be judged.
 
     fine, instead: measures of the histories, and of what tells their errors. reference: of
     `read_reference`.
     """
-    rows = reference[(reference["figure"] == number) & (reference["form"] != "layout")]
-    drawn = (
-        rows["condition"].astype(str).str.contains(DRAWN, regex=False)
-    )  # of several definitions only that which is drawn
-    rows = rows[drawn | ~rows["quantity"].isin(rows.loc[drawn, "quantity"])]
-    for roles in SPEAKING:
-        judged = (
-            _judged(row, fine, instead) for _, row in rows[rows["role"].isin(roles)].iterrows()
-        )
-        if found := [one for one in judged if one is not None]:
-            break
-    else:
-        return None
-    _, chosen = min(found, key=lambda pair: pair[0])
-    holds = sum(one.verdict == "holds" for _, one in found)
-    return replace(chosen, ids=f"{chosen.ids}; {holds} of {len(found)} hold")
+    entries = reference[reference["figure"].eq(number) & reference["role"].isin(SPEAKING)]
+    rows = [judged_row(entry, fine, instead, reference) for _, entry in entries.iterrows()]
+    return figure_verdicts(pd.DataFrame(rows), reference).get(number) if rows else None
 
 
-SPEAKING = (("trend", "result"), ("calibrated",))
-"""Roles of rows: those after the first speak where no row of the first does."""
-DRAWN = "(headline)"
-"""In the condition of a row that is about the strain energy drawn, where others are about other
-definitions.
-"""
+SPEAKING = ("trend", "result")
+"""Roles of the rows that speak for the model."""
 
 
-def _judged(row: pd.Series, fine: Measures, instead: Instead) -> tuple[int, Said] | None:
-    """The rank of a row among those that speak, and what it says."""
-    about, condition = _plain(row["quantity"]), _plain(row["condition"])
-    try:
-        if row["form"] == "trend":
-            trend = TRENDS[row.name](fine)
-            first, *others = trend.note.split("; ")
-            failing = [
-                part for part in (first, *others) if part.startswith(("not for", "not from"))
-            ]
-            short = failing[0] if failing else _counted(trend.shown, row)
-            long = _plain(joined(*dict.fromkeys((first, *failing[:1])))) or short
-            verdict = "holds" if trend.holds else "fails"
-            return 2 * trend.holds, Said(row.name, about, condition, verdict, short, long)
-        _, value, _, verdict, remark = judged(row, fine, instead)
-    except KeyError:
-        return None
-    if verdict == "not_comparable":
-        return None
-    units, scale = row["units"], 1.0
-    if units == "Pa" and "pressure" in row["quantity"]:
-        units, scale = "kPa", 1e-3
-    ends = ("low",) if row["form"] == "value" else ("low", "high")
-    stated = _shown(" to ".join(f"{scale * row[end]:g}" for end in ends), units)
-    axis = "on an axis of " if row["form"] == "axis" else ""
-    doubt = ", reading uncertain" if row["kind"] == "garbled" else ""
-    condition = joined(condition, "the pad was fitted to it" * (row["role"] == "calibrated"))
-    holds = verdict != "outside"
-    shown = _shown(scale * value, units)
-    remark = re.sub(r"^by \S+ \((.+)\)$", r"\1", remark.partition(", ")[0])
-    rank = (4 if holds else 3) if axis else 2 if holds else 1
-    return rank, Said(
-        row.name,
-        f"{about} {axis}{stated}{doubt}",
-        condition,
-        "holds" if holds else "fails",
-        shown,
-        ", ".join(filter(None, (shown, remark))),
-    )
+def figure_verdicts(table: pd.DataFrame, reference: pd.DataFrame) -> dict[str, Said]:
+    """The verdict on every figure, by its number, of rows of the comparison."""
+    rows = judged_rows(table, reference)
+    rows = rows[rows["role"].isin(SPEAKING)]
+    score, why = (rows["id"].map(reference[key]) for key in ("score", "reason"))
+    speaks, trivial = score.ne("none"), score.eq("none") & why.eq("by_construction")
+    found = {
+        figure: Said("not judged", _parts(group), ())
+        for figure, group in rows[trivial].groupby("figure")
+    }
+    for figure, group in rows[speaks].assign(fitted=score.eq("fitted")).groupby("figure"):
+        agrees = group["agrees"]
+        verdict = "holds" if agrees.all() else "partly" if agrees.any() else "fails"
+        sides = [
+            tuple(
+                part
+                for _, of in group.groupby(["quantity", "kind"], sort=False)
+                if (part := _part(of, side))
+            )
+            for side in (True, False)
+        ]
+        counts = int(agrees.sum()), len(group), int(group["fitted"].sum())
+        found[figure] = Said(verdict, *sides, *counts)
+    return found
+
+
+def _parts(group: pd.DataFrame) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(map(_plain, group["quantity"])))
+
+
+def _part(rows: pd.DataFrame, side: bool) -> str:
+    """The name of what is said of one quantity, as far as it agrees or, the other `side`, does not;
+    with the conditions where there is both, and with what the note of a single row tells of it.
+    """
+    of = rows[rows["agrees"] == side]
+    if of.empty:
+        return ""
+    name = "axis of " * (of["kind"].iloc[0] == "axis") + _plain(of["quantity"].iloc[0])
+    if len(of) < len(rows):
+        return f"{name}: {', '.join(map(_short, of['condition']))}"
+    if len(of) > 1:
+        return name
+    note = str(of["note"].iloc[0])
+    if of["kind"].iloc[0] == "trend":
+        detail = re.search(r"(?:^|; )(holds for .*?; fails for [^;]*)", note)
+        return f"{name} ({detail[1]})" if detail else name
+    detail = re.match(r"by \S+ \((.+?)\)|(\d+% (?:above|below)[^,;:]*)", note)
+    return f"{name} ({detail[1] or detail[2]})" if detail and not side else name
+
+
+def _short(condition: object) -> str:
+    """The first words of a condition, a curvature without its unit."""
+    return re.sub(r"K = (\d+)( 1/m)?", r"\1", _plain(condition).partition(";")[0])
 
 
 def _plain(text: object) -> str:
-    """Text without the mark that parts the pieces of a statement; nothing for what is missing."""
-    return "" if text != text else str(text).replace(" | ", " ").replace(" um", " µm").strip()
-
-
-def _shown(value: float | str, units: str) -> str:
-    text = value if isinstance(value, str) else digits(value)
-    return f"R2 {text}" if units == "R2" else text if units == "1" else f"{text} {units}"
-
-
-def _counted(value: float, row: pd.Series) -> str:
-    """The number of a trend where it says something by itself: with its unit, or of how many it
-    counts.
-    """
-    if row["units"] in ("1", "count"):
-        return ""
-    return _shown(
-        f"{value:g} of {row['low']:g}" if row["low"] == row["low"] else value, row["units"]
-    )
+    """Text with the sign of a micrometre; nothing for what is missing."""
+    return "" if text != text else str(text).replace(" um", " µm").strip()

@@ -5,13 +5,13 @@ the thesis states it in.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from cysyk1999.claims.verdicts import digits, joined
+from cysyk1999.claims.verdicts import digits
 from cysyk1999.measures.table import Measures
 
 ALIKE = 0.15
@@ -26,13 +26,34 @@ FOLLOWS = 0.9
 """Least correlation of a trace that follows another."""
 
 
+NAMED = 4
+"""Cases that are named one by one; of more it is said how many they are, where the others are
+named.
+"""
+
+
 @dataclass(frozen=True)
 class Trend:
-    """Outcome of a trend: whether it holds, the number shown, and a remark."""
+    """Outcome of a trend: whether it holds, the number shown, a remark, and of which cases it
+    holds.
+    """
 
     holds: bool
     shown: float
     note: str = ""
+    parts: Mapping[str, bool] = field(default_factory=dict)
+
+    @property
+    def parted(self) -> str:
+        """``holds for A, B; fails for C``, where there is both; of many the fewer are named."""
+        good, bad = ([k for k, v in self.parts.items() if bool(v) == w] for w in (True, False))
+        if not good or not bad:
+            return ""
+        named = [", ".join(good), ", ".join(bad)]
+        if max(len(good), len(bad)) > NAMED:
+            many = len(good) <= len(bad)
+            named[many] = f"the other {len((good, bad)[many])}"
+        return f"holds for {named[0]}; fails for {named[1]}"
 
 
 TRENDS: dict[str, Callable[[Measures], Trend]] = {}
@@ -60,26 +81,18 @@ def of_each(
 
 def everywhere(outcome: Mapping[str, bool], what: str = "", needed: int | None = None) -> Trend:
     """Whether something holds in every case; the number shown counts those for which it does."""
-    failing = [label for label, holds in outcome.items() if not holds]
-    count = len(outcome) - len(failing)
-    note = joined(what, f"not for {', '.join(failing)}" if failing else "")
-    return Trend(count >= (needed or len(outcome)), count, note)
+    count = sum(map(bool, outcome.values()))
+    return Trend(count >= (needed or len(outcome)), count, what, outcome)
 
 
 def ordered(values: Mapping[str, float], what: str, growing: bool = True) -> Trend:
     """Whether the values of the surfaces, broad to sharp, only grow (or only fall)."""
     names, numbers = list(values), list(values.values())
-    wrong = [
-        f"{a} to {b}"
-        for (a, x), (b, y) in pairwise(values.items())
-        if (y <= x if growing else y >= x)
-    ]
+    outcome = {
+        f"{a} to {b}": y > x if growing else y < x for (a, x), (b, y) in pairwise(values.items())
+    }
     note = f"{what}: {digits(numbers[0])} ({names[0]}) to {digits(numbers[-1])} ({names[-1]})"
-    return Trend(
-        not wrong,
-        len(values) - len(wrong),
-        note + (f"; not from {', '.join(wrong)}" if wrong else ""),
-    )
+    return Trend(all(outcome.values()), 1 + sum(outcome.values()), note, outcome)
 
 
 def stepwise(values: Mapping[str, float], unit: str, sign: int = 1) -> Trend:

@@ -6,8 +6,7 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from cysyk1999.claims.trends import Trend, everywhere, of_each, ordered, trend
-from cysyk1999.claims.verdicts import joined
+from cysyk1999.claims.trends import ALIKE, Trend, everywhere, of_each, ordered, trend
 from cysyk1999.measures.of_presses import ENERGIES
 from cysyk1999.measures.responses import straight_line
 from cysyk1999.measures.runs import CYLINDERS, FAST, NINE, PADS, RIDGED_NINE
@@ -112,18 +111,12 @@ def peaks_at_the_top(m, label):
     )
 
 
-@trend("TR15")
-def largest_and_centre_decay_alike(m):
-    largest, centre = (m("fall_in_hold", K210, k) for k in ("largest", "centre"))
-    half, half_centre = (m("half_of_fall", K210, k) for k in ("largest", "centre"))
-    note = (
-        f"fall {largest:.1%} and {centre:.1%}, half of it after {half:.2f} and {half_centre:.2f} s"
-    )
-    return Trend(
-        largest > 0 and centre > 0 and abs(half - half_centre) <= 0.3 * half_centre,
-        half / half_centre,
-        note,
-    )
+@trend("TR15", quantity="half_of_fall", what="half of the fall after {:.2f} and {:.2f} s")
+@trend("TR15a", quantity="fall_in_hold", what="fall {:.1%} and {:.1%}")
+def largest_and_centre_decay_alike(m, quantity, what):
+    largest, centre = (m(quantity, K210, k) for k in ("largest", "centre"))
+    alike = min(largest, centre) > 0 and abs(largest / centre - 1) <= ALIKE
+    return Trend(alike, largest / centre, what.format(largest, centre))
 
 
 @trend("TR16")
@@ -136,6 +129,13 @@ def same_time_constant_at_every_node(m):
     return Trend((long - short) / mean <= 0.3, (long - short) / mean, note)
 
 
+@trend("TR16a")
+def eq_4_1_gives_the_decay(m):
+    left = m.find("residual_of_eq_4_1", K210)
+    note = f"residual over the pressure {min(left.values()):.0%} to {max(left.values()):.0%}"
+    return everywhere({k: v <= AGREES for k, v in left.items()}, note)
+
+
 @trend("TR17")
 def later_nodes_peak_lower(m):
     count = m("late_nodes", K210, "all")
@@ -145,6 +145,16 @@ def later_nodes_peak_lower(m):
     before = m("highest_pressure", K210, "highest")
     note = f"peaks {first:.0f} to {last:.0f} Pa at {count:.0f} nodes, {before:.0f} Pa before"
     return Trend(m("late_nodes", K210, "higher") == 0 and highest < before, count, note)
+
+
+@trend("TR17a")
+def later_nodes_rise_sooner(m):
+    found = m.find("late_rise", K210)
+    if not found:
+        return Trend(False, 0, "no two nodes join in the hold")
+    first, last, more = (found[k] for k in ("first", "last", "increase"))
+    note = f"{first:.2f} to {last:.2f} s; from one to the next at most {more:+.2f} s"
+    return Trend(more <= 0, last / first, note)
 
 
 @trend("TR18")
@@ -162,9 +172,7 @@ def pressure_peaks_off_the_centre(m):
     excess, at = of_each(m, "off_centre_excess", NINE, "end"), of_each(m, "off_centre_place", NINE)
     twins = {k: e for k, e in excess.items() if e > TWIN}
     where = ", ".join(f"{k} at ±{at[k]:.2f} mm ({e:+.0%})" for k, e in twins.items())
-    without = ", ".join(label for label in BROAD if label not in twins)
-    note = joined(f"end of hold: {where or 'none'}", without and f"not for {without}")
-    return Trend(not without, len(twins), note)
+    return everywhere({k: k in twins for k in BROAD}, f"end of hold: {where or 'none'}")
 
 
 @trend("TR11")
@@ -192,14 +200,18 @@ def same_width_without_layers(m):
     return Trend(abs(plain / layered - 1) <= 0.1, plain / layered - 1, note)
 
 
-@trend("TR14")
-def peak_moves_out(m):
-    early, top, end = (m("peak_place", K210, k) for k in ("early", "top", "end"))
-    note = (
-        f"peak at {early:.2f} mm early in the ramp, {top:.2f} mm at its top, {end:.2f} mm at "
-        "the end"
-    )
-    return Trend(early < top <= end and end > early, end, note)
+@trend("TR14", of=("early", "top"), what="early in the ramp, {:.2f} mm at its top")
+@trend("TR14a", of=("top", "end"), what="at the top of the ramp, {:.2f} mm at the end of the hold")
+def peak_moves_out(m, of, what):
+    before, after = (m("peak_place", K210, k) for k in of)
+    return Trend(after > before, after, f"peak at {before:.2f} mm " + what.format(after))
+
+
+@trend("TR14b")
+def critical_distance_is_the_same(m):
+    mean, least, most = (m("critical_distance", K210, k) for k in ("mean", "least", "most"))
+    note = f"{least:.2f} to {most:.2f} mm from the edge"
+    return Trend(max(mean - least, most - mean) <= ALIKE * mean, (most - least) / mean, note)
 
 
 # --- strain energy --------------------------------------------------------------------------------
@@ -214,9 +226,9 @@ def energy_peaks_at_the_centre(m):
 
 
 def _definitions(function):
-    """The trend of each of the five definitions of the strain energy: a is the headline's."""
+    """The trend of each of the six definitions of the strain energy: a is that of 1999."""
     for number, peak in (("20", True), ("21", False)):
-        for tag, name in zip("abcde", ("", *(f", {k}" for k in ENERGIES)), strict=True):
+        for tag, name in zip("abcdef", ("", *(f", {k}" for k in ENERGIES)), strict=True):
             trend(f"TR{number}{tag}", at=f"915 um{name}", peak=peak)(function)
     return function
 
@@ -246,12 +258,19 @@ def stands_out_less_when_deep(m):
 @trend("TR87")
 def pressure_gives_energy(m):
     left = m.find("residual_of_eq_4_4", PLATE)
-    falls = sum(fall > 0 for fall in m.find("fall_by_eq_4_4", PLATE).values())
-    note = (
-        f"residual {min(left.values()):.0%} to {max(left.values()):.0%}; falls in the hold by "
-        f"Eq 4-4 under {falls} surfaces"
-    )
+    notes = []
+    for law, name in (("eq_4_4", "Eq 4-4"), ("square", "the square of its sum")):
+        off = m.find(f"residual_of_{law}", PLATE).values()
+        falls = sum(fall > 0 for fall in m.find(f"fall_by_{law}", PLATE).values())
+        spread = f"{min(off):.0%} to {max(off):.0%}"
+        notes.append(f"residual by {name} {spread}, falls in the hold under {falls} surfaces")
+    note = "; ".join(notes)
     return everywhere({label: share <= AGREES for label, share in left.items()}, note, PANELS)
+
+
+@trend("TR87a")
+def energy_from_pressure_falls_in_the_hold(m):
+    return everywhere({k: fall > 0 for k, fall in m.find("fall_by_eq_4_4", PLATE).items()})
 
 
 # --- predicted rates ------------------------------------------------------------------------------
@@ -264,14 +283,12 @@ def rate_grows(m, runs, window, what, silent):
     found = of_each(m, "rate", runs, window)
     first = next((i for i, v in enumerate(found.values()) if v > 0), 0) if silent else 0
     names, values = list(found)[first:], list(found.values())[first:]
-    wrong = [f"{names[i]} to {names[i + 1]}" for i in np.flatnonzero(np.diff(values) <= 0)]
+    steps = zip(pairwise(names), pairwise(values), strict=True)
+    grows = {f"{a} to {b}": y > x for (a, b), (x, y) in steps}
     note = f"{what} {values[0]:.1f} ({names[0]}) to {values[-1]:.1f} (1260) impulses/s"
     note += f"; none under {', '.join(list(found)[:first])}" if first else ""
-    return Trend(
-        values[-1] > 0 and not wrong,
-        len(values) - len(wrong),
-        "; not from ".join([note, *wrong[:1]]),
-    )
+    count = len(values) - len(grows) + sum(grows.values())
+    return Trend(values[-1] > 0 and all(grows.values()), count, note, grows)
 
 
 @trend("TR81")
@@ -370,7 +387,7 @@ def ridges_set_the_sharpest_apart(m):
         f"1260 over 630 1/m: {plain:.3f} without ridges, with ridges {centre:.3f} at the "
         f"centre, {beside:.3f} at 46 um"
     )
-    return Trend(min(centre, beside) > plain, centre / plain, note)
+    return everywhere({"the centre": centre > plain, "46 um beside": beside > plain}, note)
 
 
 @trend("TR46")

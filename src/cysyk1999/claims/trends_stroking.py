@@ -20,8 +20,10 @@ from cysyk1999.claims.trends import (
     stepwise,
     trend,
 )
-from cysyk1999.measures.responses import BIN
+from cysyk1999.claims.verdicts import digits
+from cysyk1999.measures.responses import STROKES, STROKES_SHOWN
 from cysyk1999.measures.runs import NINE, PLAIN, RIDGED, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
+from fingerpad.measures.bursts import BIN
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
 
 TEN = FULL["10"]
@@ -153,6 +155,13 @@ def alike_stepped_and_stroked(m):
     return Trend(likeness >= FOLLOWS and abs(stroked / stepped - 1) <= ALIKE, likeness, note)
 
 
+@trend("TR33a")
+def profiles_are_alike_once_shifted(m):
+    found, shifts = (m.find(f"profile_{k}", SUB["10"]) for k in ("likeness", "shift"))
+    note = f"correlation {listed(found, '', 3)}; shifted to the left by {listed(shifts, 'mm', 2)}"
+    return everywhere({k: v >= FOLLOWS for k, v in found.items()}, note)
+
+
 @trend("TR34")
 def peaks_higher_stroked(m):
     stroked, stepped = (m.find("start_pressure", scene) for scene in (SUB["10"], STEPPED))
@@ -188,10 +197,11 @@ def _lost(m, scene) -> tuple[tuple[float, float], str]:
     return (corner, second), note
 
 
-@trend("TR37")
-def contact_lost_before_both(m):
+@trend("TR37", convexity=0)
+@trend("TR37a", convexity=1)
+def contact_lost_before(m, convexity):
     lengths, note = _lost(m, SUB["40"])
-    return Trend(min(lengths) > 0, sum(v > 0 for v in lengths), "out of contact " + note)
+    return Trend(lengths[convexity] > 0, lengths[convexity], "out of contact " + note)
 
 
 @trend("TR38")
@@ -241,20 +251,27 @@ def falls_below_pressed(m):
     return Trend(falls, values[-1], "stroked over pressed " + listed(ratios, "", 2))
 
 
-@trend("TR41", quantity="energy_peaks_apart", speeds=tuple(SPEEDS), shown="10 mm/s")
-@trend("TR72", quantity="rate_peaks_apart", speeds=tuple(SPEEDS))
-@trend("T301", quantity="rate_peaks_apart", speeds=("10 mm/s",))
-def two_peaks_a_convexity(m, quantity, speeds, shown=""):
-    """Under 52 and 79 1/m; the distances shown are of all convexities at one velocity, or of these
-    two at every one.
+@trend("TR41", quantity="energy_peaks_apart", shown="10 mm/s")
+@trend("TR72", quantity="rate_peaks_apart")
+def two_peaks_a_convexity(m, quantity, shown=""):
+    """Under 52 and 79 1/m at every velocity; the distances shown are of these two, or of all
+    convexities at one velocity.
     """
-    found = by_speed(m, quantity, speeds)
-    apart = {f"{k} at {v}": found[v][k] for v in speeds for k in ("52", "79")}
+    found = by_speed(m, quantity)
+    apart = {f"{k} at {v}": found[v][k] for v in SPEEDS for k in ("52", "79")}
     given = {k: v for k, v in (found[shown] if shown else apart).items() if v > 0}
-    return everywhere(
-        {k: v > 0 for k, v in apart.items()},
-        f"apart {f'at {shown} ' if shown else ''}" + listed(given, "mm", 3 if shown else 2),
-    )
+    note = f"apart {f'at {shown} ' if shown else ''}" + listed(given, "mm", 3 if shown else 2)
+    return everywhere({k: v > 0 for k, v in apart.items()}, note * bool(given))
+
+
+@trend("T301")
+def two_bursts_a_convexity(m):
+    """Under 52 and 79 1/m, in more than half of the strokes that are shown."""
+    double, strokes = m.find("double_bursts", TEN), STROKES_SHOWN["5-22"]
+    impulses = m.find("impulses_at_560_um", TEN)
+    note = f"strokes of {strokes} with two bursts {listed(double, '')}; impulses of a stroke "
+    outcome = {k: double[k] > strokes / 2 for k in ("52", "79")}
+    return everywhere(outcome, note + listed(impulses, "", 2))
 
 
 @trend("TR42", quantity="energy_peaks_apart")
@@ -264,7 +281,7 @@ def peaks_closer_when_sharp(m, quantity):
     for speed, found in by_speed(m, quantity).items():
         seen = [found[k] for k in ("52", "79", "105") if found[k] > 0]
         outcome[speed] = len(seen) >= 2 and (np.diff(seen) < 0).all()
-        notes.append(f"{speed}: " + ", ".join(f"{v:.1f}" for v in seen))
+        notes.append(f"{speed}: " + (", ".join(f"{v:.1f}" for v in seen) or "none"))
     return everywhere(outcome, "mm apart from K = 52 on, " + "; ".join(notes))
 
 
@@ -288,25 +305,23 @@ def eq_4_4_departs_with_velocity(m):
 @trend("TR62")
 def impulses_under_convexities_only(m):
     found, dragged = m.find("impulses_in_hollows", TEN), m.find("impulses_under_hollows", TEN)
-    note = "mean number of impulses at the distances of a concavity " + listed(found, "", 2)
-    note += (
-        f"; under the centre of the skin, which is dragged back, up to {max(dragged.values()):.2g}"
-    )
+    note = f"impulses of a stroke at a concavity {listed(found, '', 2)}; while it is over the "
+    note += f"centre of the skin, which is dragged back, up to {max(dragged.values()):.2g}"
     return everywhere({k: v < NONE_LEFT for k, v in found.items()}, note)
 
 
 @trend("TR63")
 def burst_rate_grows(m):
     found = stepwise(m.find("burst_rate", TEN), "impulses/s")
-    largest = listed(m.find("convexity_rate", TEN), "impulses/s")
-    return replace(found, note=f"{found.note}; largest rates {largest}")
+    strokes = listed(m.find("burst_strokes", TEN), "")
+    return replace(found, note=f"{found.note}; strokes of {STROKES} with a burst {strokes}")
 
 
 @trend("TR65")
 def burst_rate_grows_with_velocity(m):
     found = list(by_speed(m, "burst_rate").values())
     note = "from 1 to 40 mm/s " + ", ".join(
-        f"{k}: {found[0][k]:.3g} to {v:.3g}" for k, v in found[-1].items()
+        f"{k}: {digits(found[0][k])} to {digits(v)}" for k, v in found[-1].items()
     )
     return everywhere({k: all(b[k] > a[k] for a, b in pairwise(found)) for k in found[0]}, note)
 
@@ -320,27 +335,48 @@ def burst_width_hardly_varies(m):
     )
 
 
+@trend("TR110", quantity="energy_time", of="burst_time", first=1)
+@trend("TR111", quantity="contact_length", of="burst_width")
+def as_long_as_the_burst(m, quantity, of, first=0):
+    """Within 15 % or a bin at either end, at the velocities of Figs 5-4 and 5-16, from the `first`
+    convexity on.
+    """
+    outcome, ratios = {}, {}
+    for speed in ("5", "10", "20", "40"):
+        burst, found = m.find(of, FULL[speed]), m.find(quantity, FULL[speed])
+        bins = 2e3 * BIN / (float(speed) if of == "burst_time" else 1.0)
+        for k in list(burst)[first:]:
+            near = abs(found[k] - burst[k]) <= max(ALIKE * burst[k], bins)
+            outcome[f"{k} at {speed} mm/s"] = near and min(found[k], burst[k]) > 0
+        ratios[speed] = {k: found[k] / (v or np.nan) for k, v in burst.items()}
+    return everywhere(outcome, "over the burst at 10 mm/s " + listed(ratios["10"], "", 2))
+
+
 @trend("TR67")
 def stroked_rate_between_those_pressed(m):
-    low, high = (m("rate", NINE["79"], at) for at in ("end", "peak"))
-    rate = m("burst_rate", TEN, "79")
-    note = f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m"
-    return Trend(low < rate < high, rate, note)
+    """A mean beside a mean, a peak beside a peak."""
+    steady, peak = (m("rate", NINE["79"], at) for at in ("end", "peak"))
+    burst, highest = (m(quantity, TEN, "79") for quantity in ("burst_rate", "convexity_rate"))
+    note = f"mean stroked {digits(burst)}, steady pressed {digits(steady)}; peak stroked "
+    note += f"{digits(highest)}, pressed {digits(peak)} impulses/s; K = 79 1/m"
+    return Trend(burst > steady and highest < peak, burst, note)
 
 
 @trend("TR68")
 def stroked_rate_above_the_peak_pressed(m):
-    rate = dict(m.find("burst_rate", TEN))
+    """A peak beside a peak."""
+    rate = dict(m.find("convexity_rate", TEN))
     rate["158"] = rate["157"]
     ratios = {k: rate[k] / m("rate", NINE[k], "peak") for k in WITHIN_350 if k != "flat"}
-    note = "stroked over peak pressed " + listed(ratios, "", 2)
+    note = "peak stroked over peak pressed " + listed(ratios, "", 2)
     return Trend(ratios["315"] > 1, ratios["315"], note)
 
 
 @trend("TR70")
 def rate_peaks_with_the_energy_rate(m):
+    """In the same bin or the next."""
     apart = m.find("rate_after_energy_rate", TEN)
-    note = f"at most {max(map(abs, apart.values())):.2g} mm apart; " + listed(apart, "mm", 2)
+    note = "highest bin after that of the energy's rate " + listed(apart, "mm", 2)
     return everywhere({k: abs(v) <= 1e3 * BIN + 1e-9 for k, v in apart.items()}, note)
 
 
@@ -399,20 +435,26 @@ def direction_is_felt(m, strokes):
 
 
 @trend("TR49")
-def responds_throughout_one_way_only(m):
-    """A receptor at -46 um: throughout one way, and only at the start the other way."""
+def responds_throughout(m):
+    """A receptor at -46 um, one way."""
     threshold = m("energy_threshold", RIDGED["right"])
-    least, start, late = (
-        m("energy_beside", RIDGED[way], k)
-        for way, k in (("right", "least late"), ("left", "start"), ("left", "highest late"))
-    )
-    through, ceases = least > threshold, start > threshold > late
+    least = m("energy_beside", RIDGED["right"], "least late")
     note = (
-        f"at -46 um to the right {least:.0f} Pa at least after 2 mm; to the left {start:.0f} Pa "
-        "at the start, "
-        f"{late:.0f} Pa at most after 2 mm; threshold {threshold:.0f} Pa (Eq 5-1)"
+        f"at -46 um to the right {least:.0f} Pa at least after 2 mm; threshold {threshold:.0f} Pa"
     )
-    return Trend(through and ceases, float(through) + float(ceases), note)
+    return Trend(least > threshold, least, note)
+
+
+@trend("TR49a")
+def responds_at_the_start(m):
+    """The same receptor, the other way."""
+    threshold = m("energy_threshold", RIDGED["right"])
+    start, late = (m("energy_beside", RIDGED["left"], k) for k in ("start", "highest late"))
+    note = (
+        f"at -46 um to the left {start:.0f} Pa at the start, {late:.0f} Pa at most after 2 mm; "
+        f"threshold {threshold:.0f} Pa"
+    )
+    return Trend(start > threshold > late, start, note)
 
 
 @trend("TR51")
@@ -429,20 +471,16 @@ def islands_under_outer_ridges(m):
     return Trend(fewest > plain and cuts == 0, float(np.mean([f["median"] for f in found])), note)
 
 
-@trend("TR74")
-def one_way_at_the_beginning(m):
-    """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad
-    with inner ridges.
+@trend("TR74", fewer=True)
+@trend("TR74a", fewer=False)
+def one_way_at_the_beginning(m, fewer):
+    """One way mostly at the beginning, the other throughout, with more impulses than twice as many;
+    a receptor beside the centre of a pad with inner ridges.
     """
     found = {way: tuple(m.find("plate_impulses", RIDGED[way]).values()) for way in RIDGED}
     (few, early), (many, first) = sorted(found.values())
-    holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2
-    note = f"{few:.2g} impulses one way, {many:.2g} the other; "
-    note += "; ".join(
+    holds = few >= NONE_LEFT and early > few / 2 if fewer else many > 2 * few and first < many / 2
+    note = "mean numbers of a stroke, 46 um to the right: " + ", ".join(
         f"to the {way} {n:.2g}, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items()
     )
-    return Trend(
-        holds,
-        many / max(few, 1e-9),
-        f"{note}; mean numbers of a stroke, receptor 46 um to the right",
-    )
+    return Trend(holds, few if fewer else many, note)

@@ -27,7 +27,7 @@ number that is inside only by a large error is outside.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -89,9 +89,31 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"
 
 
+def hardest(
+    values: Sequence[float], errors: Sequence[float], entry: Mapping
+) -> tuple[int, str, str]:
+    """Which of a row's possible numbers is judged, its verdict and its remark: one that is outside
+    by a possible end of its range or axis; else one that is not comparable, else the first.
+
+    Parameters
+    ----------
+    values, errors : the numbers that may be meant, each with its error, in the row's units.
+    entry : as of `judge`; the other end that its range or axis may have is its ``or_high``.
+    """
+    other = float(entry.get("or_high", np.nan))
+    entries = [entry] + [{**entry, "high": other}] * (other == other)
+    found = [
+        (k, *judge(value, error, each))
+        for k, (value, error) in enumerate(zip(values, errors, strict=True))
+        for each in entries
+    ]
+    order = ("outside", "not_comparable")
+    return min(found, key=lambda one: order.index(one[1]) if one[1] in order else len(order))
+
+
 def is_inside(value: float, error: float, entry: Mapping) -> bool:
     """Whether a number is inside its reference row, or plausible on its axis."""
-    return judge(value, error, entry)[0] in ("inside", "plausible")
+    return hardest([value], [error], entry)[1] in ("inside", "plausible")
 
 
 def significant(value: float, digits: int) -> float:

@@ -2,8 +2,8 @@
 what it answers follow.
 
 Made from the full fields (snapshots) of a history, one frame each, as an animated GIF. The same
-history gives the same bytes. Colours end at what the shown part of the pad has between its
-extremes: a singular point, such as the end of the nail's clamp, does not own the scale.
+history gives the same bytes. Colours end between the extremes of the part of the pad that is
+judged; beside the clamp of the nail, whose ends are singular, the pad is grey.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
@@ -22,7 +23,12 @@ from xarray import Dataset
 
 from cysyk1999.figures.geometry import boundaries, mesh_of
 from cysyk1999.measures.quantities import IMPULSE_RATE, SED, TIME
-from cysyk1999.measures.responses import curvature_of, is_stroke, predicted_rate
+from cysyk1999.measures.responses import (
+    RECEPTOR_DEPTH,
+    curvature_of,
+    is_stroke,
+    predicted_rate,
+)
 from cysyk1999.publishing import style
 from fingerpad.files import write_atomically
 from fingerpad.measures.features import PRESSURE, force_gf, profile
@@ -31,14 +37,14 @@ from fingerpad.measures.strokes import profile_and_height
 from fingerpad.results import read_history, scene_of
 from fingerpad.specimen.element_kinds import KINDS
 
-SIZE, DPI = (5.4, 5.7), 100  # inch, dots an inch
+SIZE, DPI = (5.4, 5.7), 85  # inch, dots an inch
 FRAME_TIME = 100  # ms
-MOST_FRAMES = 46
+MOST_FRAMES = 24
 """Frames of a GIF: more snapshots than these are thinned."""
-COLOURS = 96
+COLOURS = 40
 """In the one palette of all frames."""
-HALF_WIDTH, LOW, HIGH = 10.0, -6.6, 7.6  # mm, of the section shown
-JUDGED = -1.0  # mm, above which elements set the scale of the colours
+HALF_WIDTH, LOW, HIGH = 11.6, -6.8, 7.6  # mm, of the section shown: the whole skin, dragged along
+JUDGED, CLAMPED = -1.0, -2.2  # mm, above which elements set the scale, and are coloured at all
 FIELD = "snapshot_strain_energy_density"
 
 
@@ -98,8 +104,10 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     grid = fig.add_gridspec(3, 2, height_ratios=[3.2, 1.0, 1.0])
     section, below = fig.add_subplot(grid[0, :]), fig.add_subplot(grid[1:, 0])
     felt, answer = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[2, 1])
-    look = {"cmap": style.FIELD, "norm": norm, "edgecolor": "face", "lw": 0.2}
-    body = PolyCollection([], **look)
+    values = np.where(y > CLAMPED, values, np.nan)
+    cold = colormaps[style.FIELD].with_extremes(bad="0.82")
+    # neither edges nor smoothed sides: both draw the mesh
+    body = PolyCollection([], cmap=cold, norm=norm, edgecolor="none", antialiased=False)
     lines = LineCollection([], colors=style.INK, lw=0.7)
     section.add_collection(body)
     section.add_collection(lines)
@@ -124,6 +132,9 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         (dots[column],) = ax.plot([], [], "o", color=style.HIGHLIGHT, ms=5)
     felt.tick_params(labelbottom=False)
     answer.set_xlabel("time (s)")
+    (receptor,) = section.plot([], [], "o", mfc="white", mec=style.INK, ms=4.5, mew=0.8, zorder=5)
+    middle = 0.0, mesh.points[:, 1].max() - RECEPTOR_DEPTH
+    beside = np.linalg.norm(mesh.points - middle, axis=1).argmin()
     title = section.set_title("", fontfamily="DejaVu Sans Mono")
     block = section.fill_between([], [], HIGH + 1, color="0.72", ec=style.INK, lw=0.8)
     words, frames = _heading(history), []
@@ -134,6 +145,7 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         body.set_verts(points[k][cells])
         body.set_array(values[k])
         lines.set_segments([points[k][line] for line in borders])
+        receptor.set_data(*points[k][beside][:, None])
         place, pressure = profile(history, index)
         curve.set_data(1e3 * place[upper], 1e-3 * pressure[upper])
         for column, dot in dots.items():

@@ -19,8 +19,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from pandas import DataFrame, Series
 
+from cysyk1999.measures.energy_of_1999 import FACTOR
 from cysyk1999.measures.errors import PARTS, SHOWN_ABOVE, norm, total
-from cysyk1999.measures.quantities import CURVATURE, DISTANCE, HEIGHT, TIME
+from cysyk1999.measures.quantities import CURVATURE, DISTANCE, ENERGY_FACTOR, HEIGHT, TIME
 from cysyk1999.publishing import style
 from fingerpad.measures.features import PHASES, SIMULATED, STEADY, TOP, is_simulated
 
@@ -40,12 +41,16 @@ STATEMENT = "thesis statement ("
 """How the source of a row begins that holds what the thesis says of a figure, and whether it is so
 here.
 """
+MARKS = {"holds": "✓", "fails": "✗", "partly": "◐", "not judged": "–"}
+"""What stands before a verdict."""
 OTHER_PADS = "other model (pads"
 """How the source of a row of other pads begins."""
 NOTE = {"fontsize": 6.5, "color": style.GREY}
 """Of a remark in a panel."""
-BRACKET = {"color": style.GREY, "shrinkA": 0, "shrinkB": 0}
-"""Of a stretch between two bars, further than what the bars look like."""
+BRACKET = {"color": style.THESIS, "shrinkA": 0, "shrinkB": 0}
+"""Of a stretch that the thesis states, further than what its ends look like."""
+RANGE = "thesis range"
+"""Marks (`gid`) what shows the range of the thesis's axes."""
 SURFACE = "surface"
 """Panel of the rows that hold the shape of a stroked surface."""
 
@@ -95,6 +100,9 @@ def remark(ax: Axes, x: float, y: float, text: str, **look: object) -> None:
 
 # --- notes ----------------------------------------------------------------------------------------
 
+FORMULA = f" by the formula of plane stress, × {FACTOR:g}"
+"""How strain energy is read here."""
+
 
 def footnote(
     frame: DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()
@@ -112,9 +120,9 @@ def footnote(
         error = error.replace("Largest error", "Error")
     elif predicted:
         what = what.replace(",", "{},")
-        meant = " from strain energy on instantaneous moduli"
+        meant = f" from strain energy{scaling(frame) or FORMULA}"
     elif shown.str.startswith("strain_energy").any():
-        what, meant = what + "{}", "; strain energy on instantaneous moduli"
+        what, meant = what + "{}", f"; strain energy{FORMULA}"
     rest = f". {error}" if error else ""
     line = what.format(meant) + rest
     if error and how and len(line) + len(how) + 4 <= width:
@@ -126,6 +134,15 @@ def footnote(
         line = what.format(meant) + rest
         rest += words if len(line) + len(words) < width else ". Bars: other pads"
     return style.wrapped([what.format(meant) + rest + "."], width)
+
+
+def scaling(frame: DataFrame) -> str:
+    """The factor of energies at another depth than 915 um, as `responses.law_at` has it; nothing
+    where none is scaled.
+    """
+    factors = frame[ENERGY_FACTOR].dropna() if ENERGY_FACTOR in frame else []
+    scaled = [factor for factor in factors if factor != 1]
+    return f" × {scaled[0]:.3g} (mean of the holds then as 915 µm deep)" if scaled else ""
 
 
 Lines = Sequence[tuple[str, str]]
@@ -176,31 +193,22 @@ def error_text(frame: DataFrame, lines: Lines = ()) -> str:
     return f"Largest error{of}: {', '.join(parts)}"
 
 
-def statement_row(ids: str, *said: str) -> dict[str, str]:
-    """A row that holds what the thesis says of a figure, and how it is here, for a figure's frame:
-    words, condition, verdict, number and detail.
+def statement_row(verdict: str, *texts: str) -> dict[str, str]:
+    """A row for a figure's frame that holds the verdict on what the thesis says of it, and that in
+    words, from whole to short.
     """
-    return {"source": f"{STATEMENT}{ids}): {' | '.join(said)}"}
+    return {"source": f"{STATEMENT}{verdict}): {' | '.join(texts)}"}
 
 
-def statement(frame: DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
-    """``Thesis: ... Here: holds / fails (number).``, as long as a line allows; nothing without such
-    a row.
+def verdict(frame: DataFrame) -> str:
+    """The shortest text of the row that `statement_row` makes, as a mark; nothing without such a
+    row.
     """
     rows = frame["source"].astype(str)
     if not (found := rows[rows.str.startswith(STATEMENT)].tolist()):
-        return []
-    room = width if width > style.NOTE_WIDTH / 2 else 2 * width - 8  # of a column two lines
-    words, condition, verdict, number, detail = _typeset(found[0]).partition("): ")[2].split(" | ")
-    for of, why in ((condition, detail), ("", detail), (condition, number), ("", number), ("", "")):
-        told = f"; {why}" if "(" in why else why and f" ({why})"
-        line = f"Thesis: {words}{of and f' ({of})'}. Here: {verdict}{told}."
-        if len(line) <= room:
-            break
-    count = found[0].partition("; ")[2].partition(" hold): ")[0]
-    if count and not count.endswith(" of 1") and len(line) + 38 <= room:
-        line += f" In all {count} such statements hold."
-    return style.wrapped([line], width)
+        return ""
+    word, _, texts = found[0].removeprefix(STATEMENT).partition("): ")
+    return f"{MARKS.get(word, '')} {_typeset(texts).split(' | ')[-1].rstrip('.')}".strip()
 
 
 def _typeset(text: str) -> str:
@@ -345,33 +353,43 @@ def _set_limits(ax: Axes, frame: DataFrame, column: str, axis: str) -> Range | N
 def _bracket(ax: Axes, up: Range, text: bool) -> None:
     """A bracket beside a vertical axis as long as the thesis's range; `text`: with its name."""
     beside = ax.get_yaxis_transform()
-    line = BRACKET | {"arrowstyle": "|-|,widthA=.2,widthB=.2", "lw": 0.7}
-    line["ls"] = (0, (2, 2)) if up.uncertain else "-"
+    line = BRACKET | {"arrowstyle": "|-|,widthA=.2,widthB=.2", "lw": 1.0}
+    line |= {"ls": (0, (2, 2)) if up.uncertain else "-", "gid": RANGE}
     ends = (1.02, up.low), (1.02, up.high)
     ax.annotate("", *ends, xycoords=beside, textcoords=beside, arrowprops=line)
     words = "thesis axis,\nuncertain" if up.uncertain else "thesis axis\nrange"
     look = {"va": "center", "multialignment": "center", "linespacing": 1.0}
-    look |= {"fontsize": 6, "rotation": 90 if text else 0, "color": style.GREY}
+    look |= {"fontsize": 6, "rotation": 90, "color": style.GREY}
     middle = (1.03, (up.low + up.high) / 2)
-    ax.annotate(words if text else "?" * up.uncertain, middle, xycoords=beside, **look)
+    if text:
+        ax.annotate(words, middle, xycoords=beside, **look)
 
 
 def _band(uncertain: bool) -> dict[str, object]:
     """How the thesis's range is shaded: an uncertain one is hatched."""
-    hatched = {"fc": "white", "ec": "0.9", "hatch": "///"}
-    return {"lw": 0, "zorder": 0} | (hatched if uncertain else {"color": style.BAND})
+    hatched = {"fc": "white", "ec": style.BAND, "hatch": "////"}
+    return {"lw": 0, "zorder": 0, "gid": RANGE} | (hatched if uncertain else {"color": style.BAND})
+
+
+def declare_range(fig: Figure, width: int) -> None:
+    """Say in the last line of the note, where there is room for it, what the thesis's ranges look
+    like, if any is drawn.
+    """
+    marks = [artist for artist in fig.findobj() if artist.get_gid() == RANGE]
+    note = fig.texts[-1]
+    last = note.get_text().rpartition("\n")[2]
+    short = " Olive: range of the thesis's axes"
+    for words in (f"{short} (broken or hatched: reading uncertain).", f"{short}."):
+        if marks and len(last) + len(words) <= width:
+            note.set_text(note.get_text() + words)
+            return
 
 
 def thesis_box(ax: Axes, x: Range, y: Range) -> None:
-    """What the thesis's axes show as a rectangle; hatched, with a question mark, if a reading of
-    them is uncertain.
-    """
-    uncertain = x.uncertain or y.uncertain
+    """What the thesis's axes show as a rectangle; hatched if a reading of them is uncertain."""
     size = x.high - x.low, y.high - y.low
-    ax.add_patch(Rectangle((x.low, y.low), *size, **_band(uncertain)))
-    if uncertain:
-        away = {"xytext": (-2, -2), "textcoords": "offset points", "ha": "right", "va": "top"}
-        ax.annotate("?", (x.high, y.high), **NOTE | away)
+    band = _band(x.uncertain or y.uncertain)
+    ax.add_patch(Rectangle((x.low, y.low), *size, **band))
 
 
 def wide_limits(ax: Axes, rows: DataFrame, x: str, y: str) -> None:

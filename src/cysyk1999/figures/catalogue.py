@@ -6,10 +6,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
+from typing import Protocol
 
 from pandas import DataFrame
 
-from cysyk1999.publishing.write import markdown
+from cysyk1999.publishing.tables import markdown
 from cysyk1999.reference_data import TEXT, one_of, read_table
 
 CATALOGUE = {
@@ -26,6 +27,13 @@ DRAWABLE = ("simulation", "comparison")
 """Kinds that need no more than this model to be drawn, a comparison without what was recorded. So
 do recordings predicted.
 """
+
+
+class Judged(Protocol):
+    """A verdict on a figure: in one word, and in texts from whole to short."""
+
+    verdict: str
+    texts: tuple[str, ...]
 
 
 def read_catalogue(path: str | PathLike) -> DataFrame:
@@ -49,19 +57,17 @@ def read_catalogue(path: str | PathLike) -> DataFrame:
     return table
 
 
-def readme(
-    catalogue: DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]
-) -> str:
+def readme(catalogue: DataFrame, made: Mapping[str, str], judged: Mapping[str, Judged]) -> str:
     """Text of ``figures/README.md``.
 
-    made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's
-    statements on it hold here, and of how many that can be answered; the others are not in it.
+    made: the figures that are drawn, number -> title. judged: number -> the verdict on what the
+    thesis says of it; figures of which it says nothing that can be judged are not in it.
     """
     drawn = catalogue["number"].isin(list(made))
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
     head = "kind in the thesis", "in place of what is not public"
     here = [
-        (f"[{n}](thesis/fig_{n}.png)", made[n], _holds(n, judged), kind, stand_in)
+        (f"[{n}](thesis/fig_{n}.png)", made[n], _verdict(n, judged), kind, stand_in)
         for n, kind, stand_in in catalogue.loc[drawn, ["number", "kind", "stand_in"]].to_numpy()
     ]
     columns = {"number": "figure", "thesis_shows": "thesis shows", "kind": "kind"}
@@ -75,10 +81,10 @@ def readme(
         "simulations, on the thesis's axes, each with the plotted data beside it "
         "(`thesis/fig_*.csv`). None of the thesis's recordings and photographs is public: no "
         "recording is drawn, and a figure that stands in for one says *predicted* in the picture. "
-        "*Holds*: how many of the thesis's numbers, axes and trends that belong to a figure are "
-        "met here, of those that can be answered.",
+        "*Verdict*: whether the thesis's numbers, ranges, axes and trends that belong to a figure "
+        "hold here, as it says below the picture.",
         "## Drawn here",
-        markdown(DataFrame(here, columns=["figure", "shows", "holds", *head])).rstrip(),
+        markdown(DataFrame(here, columns=["figure", "shows", "verdict", *head])).rstrip(),
         "## Not drawn, and what stands in",
         markdown(never[[*columns.values(), "stands in"]]).rstrip(),
     ]
@@ -92,11 +98,11 @@ def readme(
     return "\n\n".join(parts) + "\n"
 
 
-def _holds(number: str, judged: Mapping[str, tuple[int, int]]) -> str:
-    """``3 of 4``, with a link to the rows; nothing where the thesis says nothing that can be
-    judged.
+def _verdict(number: str, judged: Mapping[str, Judged]) -> str:
+    """``partly``, with a link to the rows, and the parts; nothing where the thesis says nothing
+    that can be judged.
     """
     if number not in judged:
         return ""
-    good, count = judged[number]
-    return f"[{good} of {count}](tables/thesis_comparison_chapter{number[0]}.md)"
+    link = f"[{judged[number].verdict}](tables/thesis_comparison_chapter{number[0]}.md)"
+    return f"{link}. {judged[number].texts[0]}"

@@ -259,9 +259,10 @@ def at_depths(ax, rows, spec):
         axs.curve(ax, curve, X, DEFLECTION, color=look["color"], ls=look["ls"], lw=1.2)
         points = axs.from_source(rows, "measured")
         points = points[points["series"] == name]
-        ax.plot(points[X], points[DEFLECTION], look["marker"], color=look["color"], ms=3)
+        ax.plot(points[X], points[DEFLECTION], look["marker"], color=style.MEASURED, ms=3)
         marker = look["marker"] if round_one else ""
-        handles.append(style.handle(name, **look | {"marker": marker}, ms=3))
+        green = {"mfc": style.MEASURED, "mec": style.MEASURED}
+        handles.append(style.handle(name, **look | green | {"marker": marker}, ms=3))
     axs.limit_axes(ax, rows, X)
     ax.legend(handles=handles, title="depth", loc="lower left", handlelength=2.4, borderaxespad=0.1)
     words = misfit_at_the_rim(rows) if round_one else "steep walls:\nthe blade is\n0.1 mm wide"
@@ -397,7 +398,8 @@ def held(
         TIME,
         (NEWTON,),
         thesis,
-        Panels(3.0, fill=fill, legend={"loc": "upper right"}),
+        Panels(2.6, fill=fill, legend={"loc": "upper right"}),
+        width=style.COLUMN_WIDTH,
         rows=partial(ramp_and_hold, runs=runs, until=until),
         note=noted(
             "Lines: simulated, not measured. {error}. Contact length {length:g} mm; the recordings "
@@ -488,6 +490,7 @@ FIGURES = (
         (Y,),
         {},
         Page(2.9, three_sections),
+        at_rest=True,
         rows=section_lines,
         note=lambda frame: [NOTE],
     ),
@@ -511,6 +514,7 @@ FIGURES = (
             },
         ),
         note=lambda frame: [NOTE],
+        at_rest=True,
         rows=lambda data: mesh_rows(
             data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]])
         ),

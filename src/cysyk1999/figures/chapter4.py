@@ -13,10 +13,11 @@ from functools import partial
 
 import numpy as np
 import pandas as pd
-from pandas import DataFrame, Series
+from pandas import DataFrame
 from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
+from cysyk1999.figures import overlaid
 from cysyk1999.figures.grammar import Data, Figure, Lines, Page, Panels, Phases, nine, stacked
 from cysyk1999.measures.errors import (
     PARTS,
@@ -62,7 +63,6 @@ from fingerpad.measures.features import (
     receptors_at,
     skin_at,
     surface_nodes,
-    width,
 )
 from fingerpad.planning.errors import PROFILE_ORDER
 
@@ -117,15 +117,6 @@ def implied_widths(data: Data) -> DataFrame:
         return implied
     source = implied["source"].str.replace("thesis axis range", "thesis range of Fig 4-9")
     return implied.assign(source=source, **{WIDTH: 1 / implied["inverse"]}).drop(columns="inverse")
-
-
-def critical_distance(data: Data) -> DataFrame:
-    """The distance from the contact's edge that the thesis states, at the end of the hold."""
-    if "T147" not in data.reference.index:
-        return DataFrame()
-    edge = width(data.histories[K210["210"]])[-1] * 1e3 / 2
-    start = edge - data.reference.loc["T147", "low"]
-    return DataFrame({"source": "distance stated in the thesis (T147)", X: [start, edge]})
 
 
 @stacked
@@ -200,21 +191,10 @@ def energies(data: Data) -> Iterator[DataFrame]:
 
 
 def bars_of_the_hold(panels, frame):
-    """The thesis's ranges for the hold as bars at the right, broken where their reading is
-    uncertain.
-    """
-    (ax,) = panels.values()
+    """The thesis's ranges for the hold as bars at the right."""
     ranges = axs.from_source(frame, "thesis range of Fig 4-9")
-    if ranges.empty:
-        return
-    side = ax.inset_axes((1.03, 0, 0.2, 1), sharey=ax)
-    for column, (label, rows) in enumerate(ranges.groupby("surface", sort=False)):
-        doubt = rows["source"].str.contains("uncertain").any()
-        line = axs.look(label) | {"lw": 2.2, "ls": (0, (0.6, 0.5)) if doubt else "-"}
-        side.plot([column, column], rows[WIDTH], **line, solid_capstyle="butt")
-    side.set(xticks=[], xlim=(-0.7, len(SURFACES) - 0.3))
-    side.tick_params(labelleft=False)
-    side.set_title("range of the hold,\nthesis's Fig. 4-9\n(broken: uncertain)", fontsize=6)
+    title = "range of the hold,\nthesis's Fig. 4-9\n(broken: uncertain)"
+    overlaid.ranges_beside(*panels.values(), ranges, WIDTH, title)
 
 
 def phase_legend(panels, frame, phases=PHASES):
@@ -232,47 +212,26 @@ def phase_legend(panels, frame, phases=PHASES):
     style.header_legend(next(iter(panels.values())).figure, entries)
 
 
-def half_millimetres(panels, frame):
-    """Ticks every half a millimetre."""
-    for ax in panels.values():
-        ax.set_xticks(np.arange(0, ax.get_xlim()[1] + 0.1, 0.5))
-    phase_legend(panels, frame)
-
-
 def bars_of_pressure(panels, frame):
     """Every surface on as much of the axis as it touches, with the span of the highest pressures
-    of other pads at the middle of the contact.
+    of other pads beside the contact.
     """
     for label, ax in panels.items():
         rows = frame[frame["surface"] == label]
         reach = 1.12 * rows[X].abs().max()
         ax.set_xlim(-reach, reach)
-        axs.draw_bands(ax, rows, None, P, lambda row: 0.0, 5.0)
+        axs.draw_bands(ax, rows, None, P, lambda row, at=0.96 * reach: at, 5.0)
     phase_legend(panels, frame)
 
 
-def bars_of_energy(panels, frame):
-    """The span of the highest strain energies of other pads, side by side round the top of the
-    ramp.
-    """
-
-    def time(row: Series) -> float:
-        return 0.5 + 0.03 * (SURFACES.index(row["surface"]) - 4)
-
-    for z, ax in panels.items():
-        rows = axs.rows_of(frame, RECEPTOR, z) if RECEPTOR in frame else frame
-        axs.draw_bands(ax, rows, None, SED, time, 2.0)
-
-
-def depths_and_bars(panels, frame):
-    """A legend of the surfaces, and bars of other pads."""
+def legend_of_surfaces(panels, frame):
+    """A legend of the surfaces."""
     handles = [
         style.handle("flat plate" if k == "flat" else f"{k} 1/m", **axs.look(k), lw=2)
         for k in SURFACES
     ]
     spaces = {"handlelength": 1.0, "columnspacing": 1.2}
     style.header_legend(panels[UM[0]].figure, handles, 0.18, **spaces)
-    bars_of_energy(panels, frame)
 
 
 def name_depth(ax, z):
@@ -287,26 +246,20 @@ def pad_titles(panels, frame):
     phase_legend(panels, frame)
 
 
-def mark_critical_distance(panels, frame):
-    """The distance that the thesis states, as a bracket."""
+def mark_peaks(panels, frame):
+    """The peak of each profile that has left the centre, and how far it is from the edge."""
     (ax,) = panels.values()
-    critical = axs.from_source(frame, "distance stated")[X]
     phase_legend(panels, frame)
-    if critical.empty:
-        return
-    y = 0.93 * ax.get_ylim()[1]
-    ends = axs.BRACKET | {"arrowstyle": "|-|,widthA=.3,widthB=.3"}
-    ax.annotate("", (critical.min(), y), (critical.max(), y), arrowprops=ends)
-    text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance\nstated in the thesis"
-    away = {"xytext": (0, -5), "textcoords": "offset points", "ha": "right", "va": "top"}
-    ax.annotate(text, (critical.max(), y), **away, **axs.NOTE)
-
-
-def energy_and_pressure(panels, frame):
-    """Legend of the two lines of a panel."""
-    ink = {"color": style.INK}
-    looks = {"strain energy density": axs.FIRST | ink, "scaled pressure": axs.SECOND | ink}
-    style.header_legend(panels["flat"].figure, style.handles(looks))
+    apart = []
+    for _, rows in axs.simulated(frame).groupby(TIME):
+        peak = rows.loc[rows[P].idxmax()]
+        if peak[X] > 0:
+            apart.append(rows[X].max() - peak[X])
+            ax.plot(peak[X], peak[P], "o", ms=3.5, mfc="white", color=style.INK, zorder=4)
+    if apart:
+        span = " to ".join(dict.fromkeys(f"{x:.2f}" for x in (min(apart), max(apart))))
+        text = f"from peak (circle) to edge:\n{span} mm; the thesis:\nabout 0.5 mm for each profile"
+        axs.remark(ax, 0.98, 0.96, text, ha="right", va="top", **axs.NOTE)
 
 
 def force_or_pressure(ax, frame, spec):
@@ -379,14 +332,7 @@ FIGURES = (
         X,
         (Y,),
         {X: "T100", Y: "T101"},
-        nine(
-            SURFACES,
-            5.6,
-            fill=Phases(order=(axs.AT_REST, STEADY, TOP)),
-            limit="x",
-            extra=partial(phase_legend, phases=(axs.AT_REST, TOP, STEADY)),
-            set={"ylim": (3, 6), "xticks": [-10, 0, 10], "yticks": [3, 4, 5, 6]},
-        ),
+        Page(3.3, overlaid.skins),
         rows=skin,
     ),
     Figure(
@@ -465,7 +411,7 @@ FIGURES = (
             # (T139)
             P: by_surface("T138 T126 T127 T140 T140 T140 T141 T141 T142"),
         },
-        nine(SURFACES, 5.9, fill=Phases(), extra=half_millimetres),
+        Page(3.3, overlaid.pressures_over_sinking, "surface"),
         rows=lambda data: data.profiles(NINE, DOWN, half=True),
     ),
     Figure(
@@ -475,9 +421,8 @@ FIGURES = (
         X.reading(None, "distance from the centre (mm)"),
         (P,),
         {X: "T146", P: "T145"},
-        Panels(3.5, fill=Phases(), extra=mark_critical_distance),
+        Panels(3.5, fill=Phases(), extra=mark_peaks),
         rows=lambda data: data.profiles(K210, half=True),
-        after=critical_distance,
     ),
     Figure(
         "4-15",
@@ -517,6 +462,7 @@ FIGURES = (
         Page(6.2, three_by_three),
         rows=profiles_and_receptors,
         after=axes_of_three,
+        judged_with=(NINE.only(THREE),),
     ),
     Figure(
         "4-21",
@@ -530,13 +476,7 @@ FIGURES = (
                 [k for k in SURFACES if k != "158"],
             )
         },
-        nine(
-            SURFACES,
-            5.9,
-            set=HOLD,
-            fill=Lines(looks={SED: axs.FIRST, P_SCALED: axs.SECOND}),
-            extra=energy_and_pressure,
-        ),
+        Page(3.3, overlaid.energies_and_pressures, "surface"),
         # with the errors of the pressure before it is scaled
         rows=lambda data: data.traces(NINE, (TIME, SHOWN, P_SCALED), (SHOWN, P_CENTRE)),
     ),
@@ -547,10 +487,8 @@ FIGURES = (
         TIME,
         (SHOWN,),
         {TIME: "T189", SED: "T188"},
-        Panels(3.0, fill=Lines(ends=2.62), extra=bars_of_energy),
+        Panels(3.0, fill=Lines(ends=2.62)),
         width=style.COLUMN_WIDTH,
-        measured="pads",
-        after=lambda data: data.bands(SED, {"energy_915": {}}),
     ),
     Figure(
         "4-24",
@@ -565,10 +503,8 @@ FIGURES = (
             by=RECEPTOR,
             set=HOLD,
             title=name_depth,
-            extra=depths_and_bars,
+            extra=legend_of_surfaces,
         ),
-        measured="pads",
-        after=lambda data: data.bands(SED, {f"energy_{z}": {RECEPTOR: float(z)} for z in UM}),
         rows=energies,
     ),
     Figure(

@@ -11,9 +11,8 @@ another model's in panels of their own. A user's recordings under the same proto
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from operator import itemgetter
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +26,7 @@ from cysyk1999.measures.errors import PARTS, Curve, curve_errors, over_time, sha
 from cysyk1999.measures.quantities import (
     CURVATURE,
     DOUBT,
+    ENERGY_FACTOR,
     FORCE,
     FREQUENCY,
     GIVEN_RATE,
@@ -40,10 +40,10 @@ from cysyk1999.measures.quantities import (
     RATE,
     SED,
     SED_LAW,
+    SED_SQUARE,
     STEADY_RATE,
     TIME,
     P,
-    Q,
 )
 from cysyk1999.measures.responses import (
     NODE_COUNT,
@@ -54,7 +54,8 @@ from cysyk1999.measures.responses import (
     contact_nodes,
     energy_from_pressure,
     fit_nodes,
-    fit_sum,
+    law_at,
+    laws_of_sum,
     mean_frequency,
     mean_pressure,
     node_places,
@@ -63,10 +64,9 @@ from cysyk1999.measures.responses import (
     pressure_by_law,
     raster,
     rate_in,
-    shallow_law,
     straight_line,
 )
-from cysyk1999.measures.runs import FAST, LOWER, NINE, Runs
+from cysyk1999.measures.runs import FAST, LOWER, NINE, SPHERES, Runs
 from cysyk1999.measures.table import reading
 from cysyk1999.publishing import style
 from cysyk1999.receptors.fits import gain_and_threshold, r_squared
@@ -79,7 +79,7 @@ from fingerpad.measures.features import (
     ramp_end,
 )
 from fingerpad.planning.errors import PROFILE_ORDER
-from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, rectified
+from fingerpad.receptors.laws import rectified
 
 AVERAGED = 100
 """Trials that the frequency of Fig 4-3 is the mean of."""
@@ -94,13 +94,14 @@ PRINTED = ("T083", "T084", "T085", "T086", "T087")
 RATES = "impulse_rates"
 SPREAD = "standard deviation (impulses/s)"
 """Column of what is recorded: over repetitions, where it is given."""
-GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: cylinders"
-HALF_SPACE = "half-space; ours: layered pad"
+GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: {}"
+HALF_SPACE = "half-space; ours: {}"
 PEAK_RATE = GIVEN_RATE.reading(None, "peak rate (impulses/s)")
 LOWER_RIGHT = {"loc": "lower right", "handlelength": 1.4}
+FITTED = "linear in the pressure, fitted"
 OF_THE_LARGEST = "of the largest"
-OF = "panel"
-"""Column that says which measure of other pads a bar shows."""
+OVER_NODES = "thesis range, widths as its nodes tell them"
+"""How the source of a row begins that holds where a range begins with what nodes hide."""
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
 # --- rows -----------------------------------------------------------------------------------------
@@ -220,23 +221,25 @@ def peak_and_steady(data: Data, over_curvature: bool) -> Iterator[DataFrame]:
             yield peak.merge(steady, on=["source", CURVATURE, DOUBT])
 
 
-def widths_of_other_pads(data: Data) -> DataFrame:
-    """How far the inverse contact widths of other pads differ as the hold begins and as it ends."""
-    measures = {m: {OF: m} for m in ("width_top", "width_end")}
-    return data.bands(INVERSE_WIDTH, measures, lambda width: 1 / width)
-
-
-def rate_and_width(data: Data) -> DataFrame:
-    """Predicted rate and inverse contact width in the hold, one row an output and surface."""
+def widths_in_the_hold(data: Data) -> DataFrame:
+    """Inverse contact width in the hold, one row an output and surface."""
 
     def read(history: Dataset) -> dict[str, np.ndarray]:
         held = history.isel(time=slice(ramp_end(history), None))
-        rate, _ = THESIS_RATE.terms(energy(held, RECEPTOR_DEPTH), 0.0)
-        shown = {q: q.read(held) for q in (TIME, INVERSE_WIDTH)}
-        return shown | {IMPULSE_RATE: rate}
+        return {q: q.read(held) for q in (TIME, INVERSE_WIDTH)}
 
-    rate_over_time = Curve(lambda history: itemgetter(TIME, IMPULSE_RATE)(read(history)))
-    return data.table(NINE, read, rate_over_time)
+    return data.table(NINE, read, Curve(lambda history: tuple(read(history).values())))
+
+
+def widths_over_nodes(data: Data) -> DataFrame:
+    """Where the ranges of Fig 4-9 begin when a width may be as much more as nodes hide of it."""
+    ids = {label: id_ for label, id_ in WIDTH_IDS.items() if id_ in data.reference.index}
+    if not ids:
+        return DataFrame()
+    rows = data.reference.loc[list(ids.values())]
+    source = [f"{OVER_NODES} ({id_})" for id_ in rows.index]
+    least = (rows["low"] * (1 - rows["tolerance"])).to_numpy()
+    return DataFrame({"source": source, "surface": list(ids), INVERSE_WIDTH: least})
 
 
 @stacked
@@ -262,14 +265,18 @@ def nodes_by_law(data: Data) -> Iterator[DataFrame]:
 
 
 def energy_by_pressure(data: Data) -> DataFrame:
-    """Strain energy at 915 um as simulated and by Eq 4-4 from the contact pressure, one set of
-    constants for nine surfaces.
+    """Strain energy at 915 um as simulated, and from the contact pressure by Eq 4-4 and by the
+    square of its sum, one set of constants for nine surfaces.
     """
-    law = fit_sum([data.histories[scene] for scene in NINE.scenes.values()], RECEPTOR_DEPTH)
-    constants = f"A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m"
-    source = f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, {constants}"
+    laws = laws_of_sum(data.histories)
+    law, square = laws[SED_LAW], laws[SED_SQUARE]
+    source = (
+        f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, "
+        f"A2 {law.constant:.3g} 1/m; square with r {square.r * 1e3:.3g} mm, "
+        f"{square.square:.3g} 1/(Pa m2)"
+    )
     shown = over_time(partial(energy, depth=RECEPTOR_DEPTH))
-    read = partial(energy_from_pressure, depth=RECEPTOR_DEPTH, law=law)
+    read = partial(energy_from_pressure, depth=RECEPTOR_DEPTH, laws=laws)
     return data.table(NINE, read, shown).assign(source=source)
 
 
@@ -292,26 +299,41 @@ def linear_in_pressure(data: Data) -> Iterator[DataFrame]:
     """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and
     to Goodwin's first second.
     """
-    early = Q("first_second_pressure", "Pa")
-    first = partial(mean_pressure, window="first second")
-    rows = data.numbers(NINE, {GIVEN_RATE: HELD, MEAN_P: mean_pressure, early: first})
-    pressed = rows.pop(early)
-    theirs = published(data, "published", "first second", False, 20)
-
-    def fitted(pressure: np.ndarray, rates: np.ndarray) -> tuple:
-        law = gain_and_threshold(pressure, rates)
-        return law, f"{SIMULATED}: linear in the pressure, R2 {r_squared(rates, law(pressure)):.3f}"
-
+    rows = data.numbers(NINE, {GIVEN_RATE: HELD, MEAN_P: mean_pressure})
     yield rows.assign(source=f"{SIMULATED}: Eq 5-1")
-    law, source = fitted(rows[MEAN_P].to_numpy(), rows[GIVEN_RATE].to_numpy())
+    law, source = fitted_in_pressure(rows[MEAN_P].to_numpy(), rows[GIVEN_RATE].to_numpy())
     yield rows.assign(source=source, **{GIVEN_RATE: law(rows[MEAN_P])})
+    theirs = published(data, "published", "first second", False, 20)
     if len(theirs):
-        at = np.interp(theirs[CURVATURE], rows[CURVATURE], pressed)
-        law, source = fitted(at, theirs[GIVEN_RATE].to_numpy())
-        part = {"source": source, "panel": "published", MEAN_P: pressed, GIVEN_RATE: law(pressed)}
-        yield rows.assign(**part)[rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()]
+        for shape, runs in shaped(data, 20, NINE):
+            yield pressure_against(data, runs, theirs).assign(series=f"{shape}, {FITTED}")
     yield theirs
     yield given(data, "hold", 40)
+
+
+def fitted_in_pressure(pressure: np.ndarray, rates: np.ndarray) -> tuple:
+    """The linear function of pressure closest to rates, and the source of its rows."""
+    law = gain_and_threshold(pressure, rates)
+    return law, f"{SIMULATED}: linear in the pressure, R2 {r_squared(rates, law(pressure)):.3f}"
+
+
+def pressure_against(data: Data, runs: Runs, theirs: DataFrame) -> DataFrame:
+    """Rates linear in the pressure of the first second, closest to published ones."""
+    first = partial(mean_pressure, window="first second")
+    rows = data.numbers(runs, {MEAN_P: first})
+    at = np.interp(theirs[CURVATURE], rows[CURVATURE], rows[MEAN_P])
+    law, source = fitted_in_pressure(at, theirs[GIVEN_RATE].to_numpy())
+    part = {"source": source, "panel": "published", GIVEN_RATE: law(rows[MEAN_P])}
+    return rows.assign(**part)[rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()]
+
+
+def shaped(data: Data, force: int, cylinders: Runs) -> Iterator[tuple[str, Runs]]:
+    """What stands for published spheres at a force: spheres, where they are simulated, and the
+    cylinders of a plane section.
+    """
+    if SPHERES[force].are_in(data.histories):
+        yield "spheres", SPHERES[force].without_companions()
+    yield "cylinders", cylinders
 
 
 @stacked
@@ -321,32 +343,28 @@ def held_rates(data: Data) -> Iterator[DataFrame]:
     yield given(data, "hold", 150)
 
 
-def law_at(data: Data, depth: float) -> tuple[ImpulseRate, float]:
-    """Eq 5-1 at a depth (m), and the factor of its energies."""
-    if depth == RECEPTOR_DEPTH:
-        return THESIS_RATE, 1.0
-    return shallow_law(NINE.histories(data.histories))
-
-
 @stacked
 def mean_rates(data: Data, depth: float) -> Iterator[DataFrame]:
     """Mean predicted rates of the hold at a depth; beside them published rates and TouchSim's, and
     ours in their windows.
     """
-    law, factor = law_at(data, depth)
+    law, factor = law_at(data.histories, depth)
     scaled = "" if factor == 1.0 else f", energies times {factor:.3f}"
     source = f"{SIMULATED}: Eq 5-1 at {depth * 1e6:.0f} um{scaled}"
+    scale = {ENERGY_FACTOR: factor}
 
     def rates(runs: Runs, window: str) -> DataFrame:
         number = partial(rate_in, depth=depth, law=law, window=window)
-        return data.numbers(runs, {GIVEN_RATE: number}).assign(source=source)
+        return data.numbers(runs, {GIVEN_RATE: number}).assign(source=source, **scale)
 
     yield rates(NINE, "hold")
-    for force, runs in {**LOWER, 20: NINE}.items():
-        early = rates(runs, "first second")
-        yield within(early.assign(panel="published", series=f"predicted, {force} gf"))
-    steady = rates(NINE, "steady")
-    yield within(steady.assign(panel="TouchSim", series="predicted, cylinders"))
+    for force, cylinders in {**LOWER, 20: NINE}.items():
+        for shape, runs in shaped(data, force, cylinders):
+            early = rates(runs, "first second")
+            yield within(early.assign(panel="published", series=f"{shape}, {force} gf"))
+    for shape, runs in shaped(data, 20, NINE):
+        steady = rates(runs, "steady")
+        yield within(steady.assign(panel="TouchSim", series=f"predicted, {shape}"))
     yield published(data, "published", "first second", False)
     yield published(data, "TouchSim", "steady", True)
     yield given(data, "hold", 40)
@@ -364,10 +382,10 @@ def peak_rates(data: Data) -> Iterator[DataFrame]:
     """
     panels = {SHALLOW_DEPTH: "600 um", RECEPTOR_DEPTH: "915 um"}
     for depth, panel in panels.items():
-        law, factor = law_at(data, depth)
+        law, factor = law_at(data.histories, depth)
         rate = partial(rate_in, window="peak", depth=depth, law=law)
         rows = data.numbers(NINE, {GIVEN_RATE: rate, RATE: partial(peak_energy_rate, depth=depth)})
-        rows["panel"] = panel
+        rows["panel"], rows[ENERGY_FACTOR] = panel, factor
         slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
         yield rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}")
         source = f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}"
@@ -531,18 +549,34 @@ def peak_and_steady_over_curvature(ax, frame, spec):
     stamp(ax, "predicted")
 
 
-def rate_over_width(ax, rows, spec):
-    """Time runs from right to left, as the contact grows."""
-    axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
-    own = axs.simulated(rows)
-    look = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.8} | axs.look(own["surface"].iloc[0])
-    axs.curve(ax, own, INVERSE_WIDTH, IMPULSE_RATE, **look)
-    ends = dict(zip(("width_top", "width_end"), own[IMPULSE_RATE].iloc[[0, -1]], strict=True))
-    axs.draw_bands(ax, rows, INVERSE_WIDTH, None, lambda row: ends[row[OF]])
-    ax.locator_params(axis="x", nbins=4)
-    if own[IMPULSE_RATE].max() == 0:
-        text = "below the threshold:\nno impulses predicted"
-        axs.remark(ax, 0.5, 0.2, text, ha="center", va="center", **axs.NOTE)
+def widths_and_ranges(ax, frame, spec):
+    """A line a surface, broad ones above, from the start of the hold (open) to its end, over the
+    thesis's range; pale: what its nodes hide.
+    """
+    for k, label in enumerate(SURFACES):
+        rows = frame[frame["surface"] == label]
+        own, ends = axs.simulated(rows), axs.from_source(rows, "thesis axis range")
+        begin = axs.from_source(rows, OVER_NODES)[INVERSE_WIDTH].min()
+        bar = {"lw": 7, "solid_capstyle": "butt", "zorder": 0, "color": style.PALE}
+        ax.plot([begin, ends[INVERSE_WIDTH].max()], [k, k], alpha=0.4, **bar)
+        uncertain = ends["source"].str.contains("uncertain").any()
+        broken = {"ls": (0, (0.5, 0.25)) if uncertain else "-"}
+        ax.plot(ends[INVERSE_WIDTH], [k] * len(ends), **bar, **broken)
+        look, values = axs.look(label), own[INVERSE_WIDTH]
+        ax.plot(values, [k] * len(own), lw=1.2, **look)
+        ax.plot(values.iloc[:1], k, "o", ms=4, mfc="white", **look)
+        ax.plot(values.iloc[-1:], k, "o", ms=4, **look)
+    ax.set(xscale="log", yticks=range(len(SURFACES)), ylim=(len(SURFACES) - 0.5, -0.5))
+    ax.set_yticklabels(map(axs.surface_name, SURFACES))
+    ticks = [0.2, 0.3, 0.5, 0.8, 1.2]
+    ax.set_xticks(ticks, map(str, ticks))
+    ax.minorticks_off()
+    ax.set(xlabel=INVERSE_WIDTH.label, ylabel="")
+    text = (
+        "open: the hold begins\nfilled: it ends\ngrey: the thesis's axis\n"
+        "(broken: uncertain);\npale: widths that its\nnodes may hide"
+    )
+    axs.remark(ax, 0.98, 0.96, text, ha="right", va="top", **axs.NOTE)
 
 
 def twelve_nodes(fig, frame, spec):
@@ -567,14 +601,34 @@ def twelve_nodes(fig, frame, spec):
     style.header_legend(fig, axes[0, 0].lines)
 
 
-def energy_and_law(ax, rows, spec):
-    """Points simulated, line by Eq 4-4, and what is left between them."""
+SUMS = {
+    SED_LAW: {"label": "Eq 4-4", "color": style.INK, "lw": 1},
+    SED_SQUARE: {"label": "square of its sum", "color": style.HIGHLIGHT, "lw": 1.2, "ls": "--"},
+}
+"""Lines of the laws of the pressure in Fig 4-22."""
+
+
+def energy_and_laws(ax, rows, spec):
+    """Points simulated, lines by the laws; of each law what is left between, and of all how much
+    they fall in the hold.
+    """
     own = axs.simulated(rows)
     look = {"marker": "o", "ms": 2.4, "mfc": "none", "mew": 0.7, "ls": "none"}
-    axs.curve(ax, own, TIME, SED, **look, **axs.look(own["surface"].iloc[0]))
-    ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
-    left = np.linalg.norm(own[SED] - own[SED_LAW]) / np.linalg.norm(own[SED])
-    axs.remark(ax, 0.97, 0.06, f"r.m.s. residual {left:.0%}", ha="right", **axs.NOTE)
+    axs.curve(ax, own, TIME, SED, label="simulated", **look, **axs.look(own["surface"].iloc[0]))
+    top = own[SED].argmax()
+    words = [f"points {own[SED].iloc[-1] / own[SED].iloc[top] - 1:+.0%} in the hold"]
+    for (column, line), kind in zip(SUMS.items(), ("solid", "dashed"), strict=True):
+        ax.plot(own[TIME], own[column], **line)
+        left = np.linalg.norm(own[SED] - own[column]) / np.linalg.norm(own[SED])
+        change = own[column].iloc[-1] / own[column].iloc[top] - 1
+        words.append(f"{kind} {change:+.0%}, r.m.s. {left:.0%} off")
+    axs.remark(ax, 0.97, 0.06, "\n".join(words), ha="right", **axs.NOTE)
+
+
+def three_kinds(panels, frame):
+    """Legend of the points and the two laws."""
+    ax = next(iter(panels.values()))
+    style.header_legend(ax.figure, ax.lines)
 
 
 def left_note(frame: DataFrame) -> list[str]:
@@ -629,31 +683,45 @@ def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
     """A panel of rates measured elsewhere or of another model (points), with ours of the same force
     (lines): how far apart they are.
     """
-    ax.set_title(f"{title}\n{mismatch}")
     if rows.empty:
+        ax.set_title(f"{title}\n{mismatch.format('cylinders')}")
         axs.remark(ax, 0.5, 0.5, "no rates given", ha="center", color=style.GREY)
         return
-    fitted, times = "linear in the pressure, fitted", []
-    own = axs.simulated(rows).sort_values(CURVATURE).fillna({"series": fitted})
+    own = axs.simulated(rows).sort_values(CURVATURE)
     curves = dict(list(own.groupby("series", sort=False)))
+    round_ = [name for name in curves if "spheres" in name]
+    whose = f"{mismatch.partition(';')[0]}; grey: cylinders"
+    ax.set_title(f"{title}\n{whose if round_ else mismatch.format('cylinders')}")
+    times = []
     theirs = rows[~is_simulated(rows)].groupby("series", sort=False)
     for marker, (name, points) in zip(style.MARKERS, theirs, strict=False):
-        look = style.look_of("force (gf)", _force(name), "color")
-        look |= {"marker": marker, "ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
+        seen = points["source"].str.startswith("measured").all()
+        look = {"color": style.MEASURED if seen else style.HIGHLIGHT, "marker": marker}
+        look |= {"ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
         ax.plot(points[CURVATURE], points[GIVEN_RATE], **look, label=name)
-        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]]
-        ours = curves[[*same, *curves][0]]
+        ours = curves[_same(name, [*round_, *curves])]
         at = np.interp(points[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])
         times += list((points[GIVEN_RATE] / at)[at > 1])
     for name, curve in curves.items():
-        look = style.look_of("force (gf)", _force(name)) | {"lw": 1.1}
-        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **look, label=name)
+        other = bool(round_) and name not in round_
+        look = style.look_of("force (gf)", _force(name), "ls")
+        look |= {"lw": 0.8, "color": style.GREY} if other else {"lw": 1.1, "color": style.INK}
+        label = "" if other and len(round_) > 1 else name
+        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **look, label=label)
     ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()))
     ax.set_xlabel(CURVATURE.label)
-    compared = times and fitted not in curves
+    compared = times and not any(FITTED in name for name in curves)
     far = f"theirs over ours: {np.median(times):.1f} (median)" if compared else ""
     small = {"fontsize": 6, "handlelength": 1.8, "borderaxespad": 0.2, "labelspacing": 0.3}
     ax.legend(title=far, alignment="left", loc="upper left", **small)
+
+
+def _same(name: str, curves: Sequence[str]) -> str:
+    """The curve that a recording is compared with: of the force or shape that it ends with, or the
+    first.
+    """
+    end = name.rpartition(", ")[2]
+    return next((curve for curve in curves if curve.endswith(end)), curves[0])
 
 
 def _force(name: str) -> str:
@@ -697,6 +765,7 @@ def from_depth(number: str, depth: float, axis: str) -> Figure:
         page_of(fill=draw_rates, ratios=(1.7, 1, 1), others=others),
         {GIVEN_RATE: axis, CURVATURE: "T202"},
         runs=(NINE, *LOWER.values()),
+        judged_with=tuple(SPHERES.values()),
         note=left_note,
     )
 
@@ -744,21 +813,15 @@ FIGURES = (
     ),
     Figure(
         "4-9",
-        "Predicted rate against the inverse of the contact width in the hold",
+        "Inverse of the contact width in the hold",
         NINE,
         INVERSE_WIDTH,
-        (IMPULSE_RATE,),
-        {
-            INVERSE_WIDTH: WIDTH_IDS,
-            IMPULSE_RATE: by_surface(
-                "T107 T109 T111 T113 T117 T119 T121",
-                ("flat", "79", "105", "158", "420", "630", "1260"),
-            ),
-        },
-        nine(SURFACES, 5.8, fill=rate_over_width, limit=""),
-        rows=rate_and_width,
-        measured="pads",
-        after=widths_of_other_pads,
+        (INVERSE_WIDTH,),
+        {INVERSE_WIDTH: WIDTH_IDS},
+        Panels(3.2, fill=widths_and_ranges, limit=""),
+        rows=widths_in_the_hold,
+        after=widths_over_nodes,
+        width=style.COLUMN_WIDTH,
     ),
     Figure(
         "4-17",
@@ -786,15 +849,22 @@ FIGURES = (
         linear_in_pressure,
         page_of(fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
         {GIVEN_RATE: "T161", CURVATURE: "T162"},
+        judged_with=(SPHERES[20],),
     ),
     Figure(
         "4-22",
-        "Strain energy density at 915 µm, and from contact pressure by Eq 4-4",
+        "Strain energy density at 915 µm, and from contact pressure",
         NINE,
         TIME,
-        (SED, SED_LAW),
+        (SED, SED_LAW, SED_SQUARE),
         {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
-        nine(SURFACES, 5.8, fill=energy_and_law, set=HOLD | {"xlim": (0, 2.58)}),
+        nine(
+            SURFACES,
+            5.8,
+            fill=energy_and_laws,
+            set=HOLD | {"xlim": (0, 2.58)},
+            extra=three_kinds,
+        ),
         rows=energy_by_pressure,
     ),
     of_rates(

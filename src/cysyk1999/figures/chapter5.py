@@ -18,6 +18,7 @@ from pandas import DataFrame
 from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
+from cysyk1999.figures import overlaid
 from cysyk1999.figures.grammar import (
     HOW,
     Data,
@@ -26,7 +27,6 @@ from cysyk1999.figures.grammar import (
     Page,
     Panels,
     nine,
-    stack,
     stacked,
     upper_profile,
 )
@@ -36,10 +36,8 @@ from cysyk1999.measures.quantities import (
     DISTANCE,
     HEIGHT,
     LATERAL,
-    LENGTH,
     NODE,
     P_CENTRE,
-    RADIUS,
     RECEPTOR,
     SCALED_CURVATURE,
     SED,
@@ -77,6 +75,7 @@ from fingerpad.planning.errors import PROFILE_ORDER
 DEEP, SHALLOW = 915e-6, 560e-6  # m, receptors of Figs 5-13 and 5-18, and of 5-24
 TEN = "10 mm/s"
 TEN_RUN, SUB_TEN = SPEEDS.only((TEN,)), SUB_SPEEDS.only((TEN,))
+PREDICTED = f"{SIMULATED}: predicted by Eq 5-1"
 PRESSED = NINE.only(WITHIN_400[1:])
 OTHER = {"color": style.HIGHLIGHT, "ls": style.DASHED, "lw": 1.1}
 """The second of two curves."""
@@ -98,12 +97,6 @@ TOP_OF_STRETCH = -0.5  # mm, where the thesis's axis of Fig 5-15 begins
 
 
 # --- rows of their own ----------------------------------------------------------------------------
-
-
-def lengths(data: Data) -> DataFrame:
-    """Stroke distance over which the centre node touches each convexity, at every velocity."""
-    rows = data.numbers(SPEEDS, {LENGTH: MEASURES["contact_length"]}, own=True)
-    return rows.drop(columns="convexity").assign(**{RADIUS: 1e3 / rows[CURVATURE]})
 
 
 @stacked
@@ -168,18 +161,6 @@ def sampled_and_zero(ax, frame, spec):
     """Points that were stepped to, and a line at zero."""
     SAMPLED(ax, frame, spec)
     ax.axhline(0, color=style.GREY, lw=0.5, zorder=1)
-
-
-def at_ten(ax, frame, spec):
-    """The range over the velocities, and one of them."""
-    rows, (y,) = axs.simulated(frame), spec.y
-    extent = rows.groupby(spec.x)[y].agg(["min", "max"])
-    apart = 100 * ((extent["max"] - extent["min"]) / extent.mean(axis=1)).max()
-    words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
-    ax.fill_between(extent.index, *extent.to_numpy().T, color="#9fc3d6", lw=0, label=words)
-    line = rows[rows["series"] == TEN].sort_values(spec.x)
-    look = {"color": style.INK, "marker": "o", "ms": 3, "lw": 0.8, "label": TEN}
-    axs.curve(ax, line, spec.x, y, points=True, **look)
 
 
 def three_locations(fig, frame, spec):
@@ -271,6 +252,7 @@ def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
         ids | {X: "T239", Y: "T239a", P: pressure},
         Page(6.2, three_locations, "panel"),
         rows=partial(locations, runs=runs),
+        judged_with=(STEPPED_OVER,),
     )
 
 
@@ -285,29 +267,13 @@ def energy_figure(number: str, depth: float, thesis: Mapping[str, str], low: flo
         DISTANCE,
         (SED,),
         thesis,
-        stack(5.6),
+        Page(4.2, overlaid.velocities),
         rows=lambda data: data.strokes((SPEEDS,), columns, (low, 80)),
         surface=(low, 80),
     )
 
 
 FIGURES = (
-    Figure(
-        "5-4",
-        "Length of each convexity in contact with the centre node",
-        SPEEDS,
-        CURVATURE,
-        (LENGTH,),
-        {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
-        Panels(
-            3.0,
-            names=((CURVATURE, LENGTH), (RADIUS, LENGTH)),
-            across=2,
-            fill=at_ten,
-            legend={"loc": "lower right"},
-        ),
-        rows=lengths,
-    ),
     at_locations(
         "5-5",
         "Skin and contact pressure, surface stepped over the pad by 1 mm",
@@ -358,7 +324,7 @@ FIGURES = (
         DISTANCE,
         (P_CENTRE,),
         {DISTANCE: "T248", P_CENTRE: "T250"},
-        Panels(3.2, legend={"loc": "upper right", "handlelength": 2.8}),
+        Panels(3.2, legend={"loc": "lower right", "handlelength": 2.8}),
         surface=(0, 50),
     ),
     Figure(
@@ -399,7 +365,7 @@ FIGURES = (
         DISTANCE,
         (P_CENTRE,),
         {DISTANCE: "T260", P_CENTRE: "T259"},
-        stack(5.6),
+        Page(4.2, overlaid.velocities),
         surface=(0, 80),
     ),
     energy_figure("5-13", DEEP, {DISTANCE: "T262", SED: "T261"}, 0),

@@ -3,8 +3,7 @@ the thesis's constants.
 
 Where the thesis shows recordings, which are not public, these figures show predictions on the same
 axes and say so: rates by Eq 5-1 from the simulated strain energy, and impulses of a seeded
-integrate-and-fire receptor at these rates. What a user puts into ``config/reference/recordings`` is
-laid over the bursts.
+integrate-and-fire receptor at these rates, the same in every figure.
 """
 
 from __future__ import annotations
@@ -18,28 +17,24 @@ from pandas import DataFrame
 from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
-from cysyk1999.figures.chapter5 import DEEP, OTHER, SHALLOW, TEN, TEN_RUN
-from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, stack, stacked
+from cysyk1999.figures import overlaid
+from cysyk1999.figures.chapter5 import DEEP, OTHER, PREDICTED, SHALLOW, TEN, TEN_RUN
+from cysyk1999.figures.chapter5_bursts import of_rate, rate_errors
+from cysyk1999.figures.grammar import HOW, Data, Figure, Page, Panels, stack, stacked
 from cysyk1999.measures.errors import (
-    PARTS,
-    Companion,
     Curve,
     curve_errors,
     family_errors,
     over_stroke,
 )
 from cysyk1999.measures.quantities import (
-    BURST_RATE,
-    BURST_TIME,
-    BURST_WIDTH,
-    CURVATURE,
+    COUNT,
     DISTANCE,
-    FREQUENCY,
+    ENERGY_FACTOR,
     IMPULSE_RATE,
     RATE,
     RECEPTOR,
     SED,
-    SPEED,
     STATIC,
     STROKE_TIME,
     TIME,
@@ -51,24 +46,20 @@ from cysyk1999.measures.responses import (
     SEED,
     STROKES_SHOWN,
     impulses_of,
-    mean_frequency,
+    law_at,
     plate_rate,
     predicted_rate,
     raster,
-    shallow_law,
     skin_sample,
     skin_shift,
     stroke_histogram,
-    stroke_law,
+    stroke_laws,
 )
-from cysyk1999.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350, Runs
-from cysyk1999.measures.table import MEASURES, reading
+from cysyk1999.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350
 from cysyk1999.publishing import style
 from fingerpad.measures.features import SIMULATED
-from fingerpad.measures.strokes import distance, energy_at, loaded
-from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
+from fingerpad.measures.strokes import distance, energy_at, loaded, passages
 
-PREDICTED = f"{SIMULATED}: predicted by Eq 5-1"
 BY_PRESSURE = {
     f"{SIMULATED}: Eq 4-4 and a constant shift": OTHER,
     f"{SIMULATED}: Eq 4-4 and the shift of the skin": {
@@ -76,8 +67,13 @@ BY_PRESSURE = {
         "ls": style.DOTTED,
         "lw": 1.1,
     },
+    f"{SIMULATED}: square of the sum and a constant shift": {
+        "color": style.HIGHLIGHT,
+        "ls": style.SOLID,
+        "lw": 0.9,
+    },
 }
-"""Sources of the energies by the two laws, and their lines."""
+"""Sources of the energies by laws of the pressure, and their lines."""
 RASTER, HISTOGRAM = "raster", "histogram"
 FOUR = SPEEDS.only(("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s"))
 EIGHT = NINE.only(CYLINDERS)
@@ -88,31 +84,6 @@ WAYS = {"right": "plate stroked to the right", "left": "plate stroked to the lef
 RATE_WORDS = "predicted rate\n(impulses/s)"
 
 
-def of_rate(column: Q, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Q:
-    """A column of `predicted_rate` at the loaded outputs of a stroke."""
-    return column.reading(lambda stroke: predicted_rate(stroke, depth, law)[column].to_numpy())
-
-
-def rate_errors(
-    history: Dataset,
-    coarse: Companion | None,
-    depth: float = DEEP,
-    law: ImpulseRate = THESIS_RATE,
-    way: tuple[float, ...] = (),
-) -> dict[str, float]:
-    """Of the predicted rate from one place to another of the way (mm), over all of it where none
-    are given.
-    """
-    rate = of_rate(IMPULSE_RATE, depth, law).read
-    curve = over_stroke(rate, *(1e-3 * place for place in way))
-    return curve_errors(history, coarse, curve).columns
-
-
-def shallow(data: Data) -> ImpulseRate:
-    """Eq 5-1 560 um deep, by the one rule of `shallow_law`."""
-    return shallow_law(NINE.histories(data.histories), SHALLOW)[0]
-
-
 # --- rows -----------------------------------------------------------------------------------------
 
 
@@ -120,15 +91,16 @@ def shallow(data: Data) -> ImpulseRate:
 def rasters(
     data: Data, number: str, low: float, high: float, depth: float = DEEP
 ) -> Iterator[DataFrame]:
-    """Predicted impulses of repeated strokes at 10 mm/s over a part of the surface (mm), and their
-    histogram.
+    """Predicted impulses of the first of the repeated strokes at 10 mm/s over a part of the surface
+    (mm), and their histogram.
     """
     ((_, history, coarse),) = data.runs(TEN_RUN)
-    repetitions, law = STROKES_SHOWN[number], THESIS_RATE if depth == DEEP else shallow(data)
-    rate, impulses = impulses_of(history, repetitions, depth, law)
+    repetitions, (law, factor) = STROKES_SHOWN[number], law_at(data.histories, depth)
+    rate, impulses = impulses_of(history, depth, law)
+    impulses = impulses[impulses["trial"] <= repetitions]
     ticks = impulses.rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
     bars = stroke_histogram(rate, impulses, repetitions)
-    of = {"source": PREDICTED, "series": TEN, RECEPTOR: depth * 1e6}
+    of = {"source": PREDICTED, "series": TEN, RECEPTOR: depth * 1e6, ENERGY_FACTOR: factor}
     of |= rate_errors(history, coarse, depth, law, (low, high))
     yield data.surface(TEN_RUN[TEN], low, high)
     for panel, rows in ((RASTER, ticks), (HISTOGRAM, bars)):
@@ -136,20 +108,16 @@ def rasters(
 
 
 @stacked
-def frequencies(data: Data) -> Iterator[DataFrame | Mapping]:
-    """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at
-    every velocity.
-    """
-    way, repetitions, law = (40.0, 80.0), STROKES_SHOWN["5-23"], shallow(data)
-    at = np.arange(way[0], way[1] + 0.01, 0.1)
+def shallow_histograms(data: Data) -> Iterator[DataFrame]:
+    """Histogram of the predicted impulses of a shallow receptor, 12 strokes at every velocity."""
+    way, (law, factor) = (40.0, 80.0), law_at(data.histories, SHALLOW)
     yield data.surface(TEN_RUN[TEN], *way)
     for series, history, coarse in data.runs(SPEEDS):
-        rate, impulses = impulses_of(history, repetitions, SHALLOW, law)
-        times = np.interp(at, rate[DISTANCE], rate[TIME])
-        frequency = mean_frequency(impulses, repetitions, times)[FREQUENCY]
-        of = {"source": PREDICTED, "panel": series, "series": series, RECEPTOR: SHALLOW * 1e6}
+        bars = stroke_histogram(*impulses_of(history, SHALLOW, law))
+        of = {"source": PREDICTED, "panel": HISTOGRAM, "series": series}
+        of |= {RECEPTOR: SHALLOW * 1e6, ENERGY_FACTOR: factor}
         errors = rate_errors(history, coarse, SHALLOW, law, way)
-        yield of | {DISTANCE: at, FREQUENCY: frequency} | errors
+        yield bars[bars[DISTANCE].between(*way)].assign(**of, **errors)
 
 
 @stacked
@@ -175,44 +143,11 @@ def plate_trace(stroke: Dataset, offset: float) -> np.ndarray:
 
 
 @stacked
-def burst_rows(data: Data, runs: Runs, columns: Mapping[Q, str]) -> Iterator[DataFrame | Mapping]:
-    """Burst of each convexity at some velocities, and a user's recorded ones, for none is
-    public.
-    """
-    own = data.numbers(runs, {q: MEASURES[name] for q, name in columns.items()}, own=True)
-    speed = own["series"].str.removesuffix(" mm/s").astype(float)
-    yield own.assign(source=PREDICTED, panel=own["series"], **{SPEED: speed})
-    if (rates := data.measured) is None:
-        return
-    rows = rates.query("window == 'burst' and receptor == 'SA-I'")
-    series = rows["speed_mm_per_s"].map("{:g} mm/s".format)
-    width, speed = rows["burst_width_mm"], rows["speed_mm_per_s"]
-    of = {"source": "measured (" + rows["recording"] + ")", "panel": series, "series": series}
-    of |= {SPEED: speed, CURVATURE: rows["curvature_per_m"]}
-    found = {BURST_RATE: rows["rate_per_s"], BURST_WIDTH: width, BURST_TIME: width / speed}
-    recorded = DataFrame(of | {q: found[q] for q in columns})
-    yield recorded[series.isin(list(runs))]
-
-
-@stacked
-def stroked_and_pressed(data: Data) -> Iterator[DataFrame]:
-    """Predicted rates against curvature: mean of the burst when stroked, peak and steady state when
-    pressed.
-    """
-    columns = ["source", "series", CURVATURE, IMPULSE_RATE, *PARTS]
-    for at, series in RESPONSES.items():
-        rows = data.numbers(WITHIN, {IMPULSE_RATE: reading("rate", at)}, own=True)
-        yield rows.assign(source=PREDICTED, series=series)[columns]
-    bursts = burst_rows(data, TEN_RUN, BURST_RATES).rename(columns={BURST_RATE: IMPULSE_RATE})
-    yield bursts.assign(series=STROKED)[columns]
-
-
-@stacked
 def by_pressure(data: Data) -> Iterator[DataFrame | Mapping]:
-    """Strain energy at 915 um, simulated and by Eq 4-4: constants of the ramps, shift constant or
-    the skin's.
+    """Strain energy at 915 um, simulated and by laws of the pressure: constants of the ramps, shift
+    constant or the skin's.
     """
-    law, shift = stroke_law(data.histories)
+    (law, shift), (square, own_shift) = stroke_laws(data.histories).values()
     yield data.surface(TEN_RUN[TEN], 0, 80)
     for series, history, coarse in data.runs(SPEEDS):
         stroke = loaded(history)
@@ -220,13 +155,22 @@ def by_pressure(data: Data) -> Iterator[DataFrame | Mapping]:
         errors = curve_errors(history, coarse, over_stroke(energy_at(DEEP))).columns
         of = {"series": series, DISTANCE: distance(stroke) * 1e3, RECEPTOR: DEEP * 1e6}
         yield of | {"source": SIMULATED, SED: sample.energy} | errors
-        for source, by in zip(BY_PRESSURE, (shift, skin_shift(stroke)), strict=True):
-            yield of | {"source": source, SED: sample.by(law, by)}
+        ways = (law, shift), (law, skin_shift(stroke)), (square, own_shift)
+        for source, way in zip(BY_PRESSURE, ways, strict=True):
+            yield of | {"source": source, SED: sample.by(*way)}
 
 
-def over_time(data: Data, columns: Sequence[Q]) -> DataFrame:
-    """Columns of `predicted_rate` over time while the surface slides, 10 mm/s."""
-    return data.traces(TEN_RUN, (STROKE_TIME, *map(of_rate, columns)))
+@stacked
+def over_time(data: Data, columns: Sequence[Q]) -> Iterator[DataFrame]:
+    """The surface, and columns of `predicted_rate` over time while it slides, 10 mm/s, with the
+    convexity that passes.
+    """
+    ((_, history, _),) = data.runs(TEN_RUN)
+    rows = data.traces(TEN_RUN, (DISTANCE, STROKE_TIME, *map(of_rate, columns)))
+    for label, (start, end) in passages(loaded(history)).items():
+        rows.loc[rows[DISTANCE].between(1e3 * start, 1e3 * end), "convexity"] = label
+    yield data.surface(TEN_RUN[TEN], 0, 80)
+    yield rows.drop(columns=DISTANCE)
 
 
 @stacked
@@ -235,13 +179,20 @@ def energy_and_histogram(data: Data) -> Iterator[DataFrame]:
     strokes.
     """
     ((_, history, coarse),) = data.runs(TEN_RUN)
-    repetitions = STROKES_SHOWN["5-19"]
-    rate, impulses = impulses_of(history, repetitions)
-    bars = stroke_histogram(rate, impulses, repetitions)
+    rate, impulses = impulses_of(history)
+    bars = stroke_histogram(rate, impulses)
     times = np.interp(bars[DISTANCE], rate[DISTANCE], rate[TIME] - rate[TIME].iloc[0])
     of = {"source": PREDICTED, "series": TEN, "panel": HISTOGRAM, TIME: times}
     yield over_time(data, (SED, RATE))
-    yield bars[[IMPULSE_RATE]].assign(**of, **rate_errors(history, coarse))
+    yield bars[[COUNT, IMPULSE_RATE]].assign(**of, **rate_errors(history, coarse))
+
+
+def predicted_over_time(data: Data) -> DataFrame:
+    """The surface, and the rate by Eq 5-1 with its part from strain energy alone over time, 10
+    mm/s.
+    """
+    rows = over_time(data, (IMPULSE_RATE, STATIC))
+    return rows.assign(source=rows["source"].replace(SIMULATED, PREDICTED))
 
 
 def pressed_rates(data: Data) -> DataFrame:
@@ -305,34 +256,16 @@ def plate_note(frame: DataFrame) -> list[str]:
     return [" ".join(f"{part}." for part in parts if part)]
 
 
-def against_velocity(ax, frame, spec):
-    """A line a convexity, named at its end."""
-    (y,), own, ends = spec.y, frame[frame["source"] == PREDICTED], {}
-    for label, rows in own.groupby("convexity", sort=False):
-        look = style.look_of("curvature (1/m)", label) | {"marker": "o", "ms": 3, "lw": 1.0}
-        axs.curve(ax, rows, SPEED, y, points=True, **look)
-        ends[label] = tuple(rows[[SPEED, y]].iloc[-1])
-    measured = axs.from_source(frame, "measured")
-    ax.plot(measured[SPEED], measured[y], "x", color=style.INK, ms=4)
-    style.label_ends(ax, ends, 42.3, "curvature (1/m)")
+def bars_at_a_velocity(ax, rows, spec):
+    """The histogram at one velocity."""
+    draw_bars(ax, rows, DISTANCE, 0.5)
 
 
-def rates_from_zero(panels, frame):
-    """Most of the predicted rates are below the 10 that the thesis's axis begins with."""
-    panels[CURVATURE, BURST_RATE].set_ylim(0, None)
-
-
-def three_laws(panels, frame):
-    """Legend of the three lines of a panel."""
-    style.header_legend(panels[TEN].figure, panels[TEN].lines)
-
-
-def say_plateaus(panels, frame):
-    """Between bursts the frequency is that of one long interval."""
+def say_brackets(panels, frame):
+    """What the brackets beside the panels are."""
     ax = next(iter(panels.values()))
     style.leave_room(ax.figure, beside=0.02)
-    text = "level stretches: one interval from burst to burst; "
-    text += "brackets: thesis's axis (?: reading uncertain)"
+    text = "brackets: thesis's axis (?: reading uncertain)"
     axs.remark(ax, 0.99, 0.97, text, ha="right", va="top", **axs.NOTE)
 
 
@@ -350,14 +283,30 @@ CUT_RATE = RATE.reading(None, "positive rate of\nstrain energy (Pa/s)")
 BINNED_RATE = IMPULSE_RATE.reading(None, RATE_WORDS)
 
 
+def name_peaks(ax: Axes, rows: DataFrame, y: Q) -> None:
+    """The curvature of each convexity (1/m) above the largest value while it passes."""
+    for label, part in rows.groupby("convexity", sort=False):
+        top = tuple(part.loc[part[y].idxmax(), [TIME, y]])
+        place = {"xytext": (0, 1.5), "textcoords": "offset points", "ha": "center"}
+        ax.annotate(label, top, va="bottom", fontsize=6, color=style.GREY, **place)
+
+
 def energy_rate_or_bars(ax, frame, spec):
-    """Energy cut at its threshold, positive rate, predicted histogram."""
+    """Energy cut at its threshold, positive rate with its peaks named, predicted histogram."""
     rows, (y,) = frame[frame["source"] == SIMULATED], spec.y
     if y == IMPULSE_RATE:
         draw_bars(ax, frame, TIME, 0.05)
     else:
         shown = rows.assign(**{y: rows[y].clip(lower=LEAST[y])})
         axs.curve(ax, shown, TIME, y, whole=rows, color=style.INK)
+        if y == RATE:
+            name_peaks(ax, shown, y)
+
+
+def stroked_rate(ax, rows, spec):
+    """Predicted rate with its peaks named."""
+    draw_rate(ax, rows, spec)
+    name_peaks(ax, rows[rows["source"] == PREDICTED], IMPULSE_RATE)
 
 
 def draw_rate(ax, rows, spec):
@@ -376,18 +325,6 @@ def legend_of_the_first(panels, frame):
     first.legend(loc="upper right")
 
 
-BURST_RATES = {BURST_RATE: "burst_rate"}
-BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
-PRESSED = {"marker": "o", "ms": 4, "color": style.INK, "clip_on": False, "zorder": 3}
-OWN_BURSTS = {
-    "color": style.INK,
-    "marker": "o",
-    "ms": 3.5,
-    "lw": 0.8,
-    "ls": "-",
-    "clip_on": False,
-    "zorder": 3,
-}
 FIGURES = (
     Figure(
         "5-1",
@@ -401,98 +338,15 @@ FIGURES = (
         how=HOW,
     ),
     Figure(
-        "5-2",
-        "Predicted burst width and burst rate, 10 mm/s",
-        TEN_RUN,
-        CURVATURE,
-        tuple(BURSTS),
-        {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"},
-        Panels(
-            3.0,
-            names=tuple((CURVATURE, y) for y in BURSTS),
-            extra=rates_from_zero,
-            across=2,
-            fill=Lines(looks={TEN: OWN_BURSTS}),
-        ),
-        rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS),
-        measured="impulse_rates",
-        joined="series",
-    ),
-    Figure(
-        "5-3",
-        "Predicted burst width and burst rate at five velocities",
-        SPEEDS,
-        SPEED,
-        tuple(BURSTS),
-        {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"},
-        Panels(3.4, names=tuple((SPEED, y) for y in BURSTS), across=2, fill=against_velocity),
-        rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS),
-        measured="impulse_rates",
-        joined="convexity",
-    ),
-    Figure(
         "5-14",
-        "Strain energy density 915 µm under the centre, simulated and by Eq 4-4",
+        "Strain energy density 915 µm under the centre, simulated and from contact pressure",
         (SPEEDS, NINE.without_companions()),
         DISTANCE,
         (SED,),
         {DISTANCE: "T262", SED: "T264"},
-        stack(
-            5.8,
-            fill=Lines(
-                by="source",
-                names={source: source.removeprefix(f"{SIMULATED}: ") for source in BY_PRESSURE},
-                looks={SIMULATED: {"color": style.INK, "ls": "-", "lw": 1.2}} | BY_PRESSURE,
-            ),
-            extra=three_laws,
-        ),
+        Page(5.6, partial(overlaid.laws_of_pressure, laws=BY_PRESSURE)),
         rows=by_pressure,
         surface=(0, 80),
-    ),
-    Figure(
-        "5-16",
-        "Predicted burst duration at four velocities",
-        FOUR,
-        CURVATURE,
-        (BURST_TIME,),
-        {CURVATURE: "T273", BURST_TIME: {series: f"T{269 + k}" for k, series in enumerate(FOUR)}},
-        Panels(
-            4.2,
-            by="panel",
-            names=FOUR,
-            across=2,
-            fill=Lines(looks=dict.fromkeys(FOUR, OWN_BURSTS)),
-            title=lambda ax, series: ax.set_title(f"v = {series}"),
-        ),
-        rows=partial(burst_rows, runs=FOUR, columns={BURST_TIME: "burst_time"}),
-        measured="impulse_rates",
-        joined="series",
-    ),
-    Figure(
-        "5-17",
-        "Predicted impulse rate, stroked and pressed",
-        (WITHIN, TEN_RUN),
-        CURVATURE,
-        (IMPULSE_RATE,),
-        {CURVATURE: "T275", IMPULSE_RATE: "T274"},
-        Panels(
-            3.2,
-            legend={"loc": "upper left", "handlelength": 3},
-            fill=Lines(
-                by="series",
-                looks={
-                    STROKED: {"ls": "-", "marker": "s", "ms": 3.5, "color": style.HIGHLIGHT},
-                    RESPONSES["peak"]: PRESSED | {"ls": style.DASHED},
-                    RESPONSES["end"]: PRESSED | {"ls": style.DOTTED, "mfc": "white"},
-                },
-                names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())}
-                | {"recorded": "recorded, stroked"},
-            ),
-        ),
-        rows=stroked_and_pressed,
-        width=style.COLUMN_WIDTH,
-        measured="impulse_rates",
-        joined="series",
     ),
     Figure(
         "5-19",
@@ -502,7 +356,7 @@ FIGURES = (
         (CUT_ENERGY, CUT_RATE, BINNED_RATE),
         {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
         Panels(
-            4.8,
+            5.4,
             names=tuple((TIME, y) for y in (CUT_ENERGY, CUT_RATE, BINNED_RATE)),
             extra=aligned,
             fill=energy_rate_or_bars,
@@ -510,7 +364,7 @@ FIGURES = (
             share={"sharex": True},
         ),
         rows=energy_and_histogram,
-        how=HOW,
+        surface=(0, 80),
     ),
     Figure(
         "5-20",
@@ -519,9 +373,9 @@ FIGURES = (
         STROKE_TIME,
         (IMPULSE_RATE,),
         {TIME: "T288", IMPULSE_RATE: "T287"},
-        Panels(3.0, fill=draw_rate, legend={"loc": "upper left"}),
-        rows=lambda data: over_time(data, (IMPULSE_RATE, STATIC)).assign(source=PREDICTED),
-        how=HOW,
+        Panels(3.4, fill=stroked_rate, legend={"loc": "upper left"}),
+        rows=predicted_over_time,
+        surface=(0, 80),
     ),
     Figure(
         "5-21",
@@ -556,24 +410,18 @@ FIGURES = (
     ),
     Figure(
         "5-23",
-        "Predicted instantaneous frequency of a receptor 560 µm deep, mean of 12 strokes",
+        "Predicted impulse rate of a receptor 560 µm deep, 12 strokes in bins of 0.5 mm",
         (SPEEDS, NINE.without_companions()),
         DISTANCE,
-        (FREQUENCY.reading(None, "predicted frequency\n(impulses/s)"),),
+        (BINNED_RATE,),
         {
             DISTANCE: "T300",
-            FREQUENCY: {
+            IMPULSE_RATE: {
                 series: "T304" if series[:2] in ("20", "40") else "T304a" for series in SPEEDS
             },
         },
-        stack(
-            5.8,
-            by="panel",
-            marked="none",
-            fill=Lines(looks={FREQUENCY: {"lw": 1.0, "ls": "-"}}),
-            extra=say_plateaus,
-        ),
-        rows=frequencies,
+        stack(5.8, marked="none", fill=bars_at_a_velocity, extra=say_brackets),
+        rows=shallow_histograms,
         surface=(40, 80),
     ),
     Figure(

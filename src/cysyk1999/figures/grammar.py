@@ -28,6 +28,7 @@ from pandas import DataFrame, Series
 from xarray import Dataset
 
 from cysyk1999.figures import axes as axs
+from cysyk1999.figures.findings import FINDINGS
 from cysyk1999.measures.errors import (
     LEFT,
     PARTS,
@@ -56,7 +57,7 @@ from cysyk1999.measures.quantities import (
 from cysyk1999.measures.responses import curvature_of
 from cysyk1999.measures.runs import Runs
 from cysyk1999.publishing import style
-from cysyk1999.publishing.write import TEXT_COLUMNS, without_round_off
+from cysyk1999.publishing.tables import TEXT_COLUMNS, without_round_off
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import read_bands, read_force_depth, read_surface_profiles
 from fingerpad.measures.features import (
@@ -332,6 +333,8 @@ class Figure:
         ``after(data)``: rows after them.
     surface
         Ends (mm) of the stroked surface that is drawn above.
+    judged_with
+        Further runs, which its verdict needs, where there are any.
     measured
         Name of the measured data (a key of `MEASURED`) shown beside; empty: none.
     joined
@@ -340,6 +343,8 @@ class Figure:
     how, note
         How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's
         statement.
+    at_rest
+        Whether the specimen is shown before anything touches it.
     width
         Inch: of a page, or of a column for a single curve.
     """
@@ -354,21 +359,29 @@ class Figure:
     rows: Callable[[Data], DataFrame] | None = None
     after: Callable[[Data], DataFrame] = lambda data: DataFrame()
     surface: tuple[float, float] | None = None
+    judged_with: tuple[Runs, ...] = ()
     measured: str = ""
     joined: str = ""
     how: str = ""
     note: Callable[[DataFrame], Sequence[str]] | None = None
+    at_rest: bool = False
     width: float = style.PAGE_WIDTH
 
     @property
     def all_runs(self) -> tuple[Runs, ...]:
-        """Its sets of runs."""
+        """Its sets of runs that are shown."""
         return (self.runs,) if isinstance(self.runs, Runs) else self.runs
 
     @property
     def needs(self) -> tuple[str, ...]:
         """Names of the scenes whose histories the frame is made from."""
         return tuple(dict.fromkeys(s for runs in self.all_runs for s in runs.scenes.values()))
+
+    @property
+    def judged_by(self) -> tuple[str, ...]:
+        """Names of the scenes that the verdict is made from: what is shown, and `judged_with`."""
+        further = (scene for runs in self.judged_with for scene in runs.scenes.values())
+        return tuple(dict.fromkeys((*self.needs, *further)))
 
     @property
     def read_companions(self) -> tuple[str, ...]:
@@ -421,6 +434,19 @@ class Figure:
         parts = [data.traces(runs, columns) for runs in self.all_runs]
         return pd.concat(parts, ignore_index=True)
 
+    def finding(self, frame: DataFrame) -> str:
+        """What the picture shows in a sentence, with its numbers (`findings`)."""
+        return FINDINGS[self.number](frame) if self.number in FINDINGS else ""
+
+    @property
+    def icon(self) -> str:
+        """What is done to the finger (`style.draw_icon`); nothing where it is at rest."""
+        if self.at_rest:
+            return ""
+        words = "stroke" if any(runs.stroke for runs in self.all_runs) else "press"
+        inside = ("strain_energy", "impulse", "burst")
+        return words + " receptor" * any(q.startswith(inside) for q in self.y)
+
     def draw(self, frame: DataFrame) -> Picture:
         """The picture, a function of the frame alone."""
         page, wide = self.layout, style.note_width(self.width)
@@ -430,10 +456,19 @@ class Figure:
             through = [(self.joined, q) for q in self.y if self.joined]
             how = self.how or (HOW if self.surface else "")
             lines = axs.footnote(frame, how, wide, through)
-        lines += axs.statement(frame, wide)
+        shows = f"after Cysyk 1999, Fig. {self.number}: {self.title}"
         with style.theme():
-            fig = style.sheet(self.title, lines, page.height, self.number, width=self.width)
+            fig = style.sheet(
+                self.finding(frame) or self.title,
+                lines,
+                page.height,
+                width=self.width,
+                shows=shows,
+                mark=axs.verdict(frame),
+                icon=self.icon,
+            )
             page.draw(fig, frame, self)
+            axs.declare_range(fig, wide)
             return style.finished(fig)
 
 
@@ -480,7 +515,7 @@ class Lines:
             ends[name] = tuple(curve[[spec.x, spec.y[-1]]].iloc[-1])
         points = axs.from_source(rows, "measured")
         if len(points):
-            look = {"color": style.HIGHLIGHT, "label": self.names.get("recorded", "recorded")}
+            look = {"color": style.MEASURED, "label": self.names.get("recorded", "recorded")}
             ax.plot(points[spec.x], points[spec.y[0]], "x", **look)
         if self.ends is not None:
             style.label_ends(ax, ends, self.ends, "curvature (1/m)")

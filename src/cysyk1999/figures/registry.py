@@ -16,6 +16,7 @@ from cysyk1999.figures import (
     chapter4,
     chapter4_receptors,
     chapter5,
+    chapter5_bursts,
     chapter5_receptors,
     ridges,
 )
@@ -23,7 +24,15 @@ from cysyk1999.figures.grammar import Figure
 
 CHAPTERS: dict[str, tuple[Figure, ...]] = {
     module.__name__: module.FIGURES
-    for module in (chapter3, chapter4, chapter4_receptors, chapter5, chapter5_receptors, ridges)
+    for module in (
+        chapter3,
+        chapter4,
+        chapter4_receptors,
+        chapter5,
+        chapter5_bursts,
+        chapter5_receptors,
+        ridges,
+    )
 }
 """Module -> its figures: those of one module are drawn in one process."""
 FIGURES: dict[str, Figure] = {

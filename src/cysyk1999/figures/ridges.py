@@ -26,7 +26,7 @@ from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, st
 from cysyk1999.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP
 from cysyk1999.measures.errors import curve_errors, over_stroke, total
 from cysyk1999.measures.quantities import SED, STROKE_TIME, TIME, X, Y, sed
-from cysyk1999.measures.runs import PLAIN, RIDGED, RIDGED_NINE, Runs
+from cysyk1999.measures.runs import NINE, PLAIN, RIDGED, RIDGED_NINE, Runs
 from cysyk1999.publishing import style
 from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.measures.strokes import loaded
@@ -185,6 +185,7 @@ FIGURES = (
         (Y,),
         {X: "T309", Y: "T310"},
         Page(3.75, mesh_and_detail),
+        at_rest=True,
         rows=elements,
         note=lambda frame: [NOTE],
     ),
@@ -205,6 +206,7 @@ FIGURES = (
             set={"xlim": (0, 3.05)},
         ),
         rows=at_two_places,
+        judged_with=(NINE,),
     ),
     plate_stroked("5-28", "no ridges", PLAIN, "T317", magnify_the_difference),
     plate_stroked("5-29", "inner ridges", RIDGED, "T319"),

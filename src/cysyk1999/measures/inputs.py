@@ -8,6 +8,7 @@ from typing import Any
 
 import xarray as xr
 
+from cysyk1999.measures.energy_of_1999 import as_of_1999
 from cysyk1999.measures.errors import Companion
 from fingerpad.measures.kept import LazyMapping
 from fingerpad.results import read_dataset
@@ -20,9 +21,18 @@ def _opened(read: Callable[[Path], Any], paths: Iterable[Path]) -> LazyMapping:
     return LazyMapping(lambda scene: read(files[scene]), files)
 
 
-def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping]:
+def read_results(
+    paths: Iterable[str | Path], of_1999: bool = False
+) -> tuple[Mapping, Mapping, Mapping]:
     """Sort result files of the workflow, ``.../<simulations, coarse or
     coarse_mesh>/<scene>/<history.nc or mesh.msh>``.
+
+    Parameters
+    ----------
+    paths
+        The files.
+    of_1999
+        Whether histories have the strain energy density of 1999 (:mod:`energy_of_1999`).
 
     Returns
     -------
@@ -35,18 +45,22 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
     for path in map(Path, paths):
         kind = "mesh" if path.suffix == ".msh" else path.parent.parent.name
         kinds[kind if kind in kinds else "own"].append(path)
-    mesh, both = (_opened(read_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
+    read = _read_as_of_1999 if of_1999 else read_dataset
+    mesh, both = (_opened(read, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
     return (
-        _opened(read_dataset, kinds["own"]),
+        _opened(read, kinds["own"]),
         _opened(read_pad_mesh, kinds["mesh"]),
         LazyMapping(lambda scene: Companion(mesh[scene], both[scene]), both),
     )
 
 
-def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
+def _read_as_of_1999(path: Path) -> xr.Dataset:
+    return as_of_1999(read_dataset(path))
+
+
+def read_coarse(paths: Iterable[str | Path], of_1999: bool = False) -> Mapping[str, xr.Dataset]:
     """Histories of the companions with coarser meshes and steps, by scene, of those among some
     files of the workflow.
     """
-    return _opened(
-        read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse")
-    )
+    of_coarse = (path for path in map(Path, paths) if path.parent.parent.name == "coarse")
+    return _opened(_read_as_of_1999 if of_1999 else read_dataset, of_coarse)

@@ -6,24 +6,40 @@ Numbers that strokes have too are read of their `loaded` outputs.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH
-from cysyk1999.measures.quantities import BURST_RATE, IMPULSE_RATE, SED, SED_LAW, TIME
+from cysyk1999.measures.energy_of_1999 import ELASTIC
+from cysyk1999.measures.quantities import (
+    IMPULSE_RATE,
+    NODE,
+    P_LAW,
+    SED,
+    SED_LAW,
+    SED_SQUARE,
+    TIME,
+    P,
+)
 from cysyk1999.measures.responses import (
     DEPTHS,
+    NODE_COUNT,
+    NODE_SURFACE,
     RECEPTOR_DEPTH,
     SHALLOW_DEPTH,
-    burst_values,
+    contact_nodes,
     energy_from_pressure,
-    fit_sum,
+    fit_nodes,
     is_stroke,
+    law_at,
+    laws_of_sum,
     peak_energy_rate,
     predicted_rate,
+    pressure_by_law,
     rate_in,
-    shallow_law,
     windowed,
 )
 from cysyk1999.measures.runs import FAST, NINE, RIDGED_NINE
@@ -36,6 +52,7 @@ from fingerpad.measures.features import (
     Histories,
     centre_node,
     energy,
+    phase_indices,
     profile,
     ramp_end,
     receptors_at,
@@ -52,11 +69,9 @@ from fingerpad.measures.measure import (
     named,
     slides,
     strokes,
-    waves,
     wavy,
 )
 from fingerpad.measures.strokes import NODES, loaded, nodes_at
-from fingerpad.receptors.laws import ImpulseRate
 from fingerpad.receptors.spikes import impulses
 from fingerpad.results import scene_of
 
@@ -66,8 +81,9 @@ ENERGIES = {
     "recoverable": "strain_energy_recoverable",
     "long-term moduli": "strain_energy_long_term_moduli",
     "half stress x strain": "strain_energy_half_stress_strain",
+    "instantaneous elastic": ELASTIC,
 }
-"""Other definitions of the strain energy than the headline's."""
+"""Other definitions of the strain energy than that of 1999 (:mod:`energy_of_1999`)."""
 
 
 def shown(history: xr.Dataset) -> xr.Dataset:
@@ -239,19 +255,14 @@ def peak_place(history):
 
 @measure("mm", held)
 def critical_distance(history):
-    """Mean distance from a node to the contact edge when its pressure peaks, on the deformed skin.
-
-    Over the nodes that reach their largest pressure before the ramp ends.
+    """Distance from the pressure peak to the contact's edge, of the profiles that Fig 4-14 shows
+    and whose peak has left the centre: mean, least and most.
     """
-    nodes = surface_nodes(history)
-    peaks = history[PRESSURE].values[:, nodes].argmax(axis=0)
-    within = (peaks > 0) & (peaks < ramp_end(history))
-    if not within.any():
-        return np.nan
-    x, _ = skin_at(history)
-    return 1e3 * np.mean(
-        history["contact_width"].values[peaks[within]] / 2 - x[peaks[within], nodes[within]]
-    )
+    peaks = {i: _peak_place(history, i) for i, _ in phase_indices(history)}
+    edges = history["contact_width"].values / 2
+    found = [1e3 * (edges[i] - place) for i, place in peaks.items() if place > 0]
+    made = {"mean": np.mean, "least": min, "most": max}
+    return {k: of(found) if found else np.nan for k, of in made.items()}
 
 
 # --- decay in the hold ----------------------------------------------------------------------------
@@ -319,6 +330,31 @@ def late_peak(history):
     """Peaks of the nodes that join in the hold: the first, the last and the highest."""
     peaks = _late_peaks(history)
     return {"first": peaks[0], "last": peaks[-1], "highest": peaks.max()} if len(peaks) else {}
+
+
+@measure("s", held)
+def late_rise(history):
+    """Time from the contact to the largest pressure of the nodes that join in the hold: the first,
+    the last, and the largest increase from one to the next; nothing of fewer than two nodes.
+    """
+    pressure = history[PRESSURE].values[:, surface_nodes(history)]
+    joins, time = (pressure > 0).argmax(axis=0), history["time"].values
+    rises = (time[pressure.argmax(axis=0)] - time[joins - 1])[joins > ramp_end(history)]
+    if len(rises) < 2:
+        return {}
+    return {"first": rises[0], "last": rises[-1], "increase": np.diff(rises).max()}
+
+
+@measure("1", lambda scene: scene.name == NINE[NODE_SURFACE])
+def residual_of_eq_4_1(history):
+    """Root mean square over the pressure's, of each node of Fig 4-17 from its peak on, by one set
+    of constants.
+    """
+    nodes = contact_nodes(history, NODE_COUNT)
+    law = pressure_by_law("4-1", nodes, fit_nodes("4-1", nodes))
+    return {
+        f"{x:.3f} mm": rms(rows[P] - rows[P_LAW]) / rms(rows[P]) for x, rows in law.groupby(NODE)
+    }
 
 
 @measure("mm", held)
@@ -406,16 +442,6 @@ def rate(history):
     )
 
 
-@measure("impulses/s", lambda scene: held(scene) or waves(scene))
-def answer(history):
-    """What Fig 5-17 compares: the peak rate of what is pressed, the highest burst rate of what is
-    stroked.
-    """
-    if is_stroke(history):
-        return max(burst_values(loaded(history), BURST_RATE).values())
-    return predicted_rate(history)[IMPULSE_RATE].max()
-
-
 @measure("s", held)
 def first_impulse(history):
     """Time of the first impulse, without variability; NaN without one."""
@@ -428,38 +454,41 @@ def _nine(runs: Histories) -> dict[str, xr.Dataset]:
     return {label: runs[scene] for label, scene in NINE.items()}
 
 
-@kept
-def _shallow_law(runs: Histories) -> tuple[ImpulseRate, float]:
-    return shallow_law(_nine(runs))
-
-
 @measure("impulses/s", named(NINE.values()), beside=True)
 def rate_at_600_um(history, runs):
-    """By Eq 5-1 scaled to the mean energy of the nine surfaces (see `shallow_law`)."""
-    law, _ = _shallow_law(runs)
+    """By Eq 5-1 scaled to the mean energy of the nine surfaces (see `law_at`)."""
+    law, _ = law_at(runs, SHALLOW_DEPTH)
     return {window: rate_in(history, window, SHALLOW_DEPTH, law) for window in ("peak", "hold")}
 
 
-@measure("1", named([NINE["flat"]]), beside=True)
-def residual_of_eq_4_4(history, runs):
-    """Root mean square over the energy's, of each of the nine surfaces by one fit."""
-    return {k: rms(f[SED] - f[SED_LAW]) / rms(f[SED]) for k, f in _by_eq_4_4(runs).items()}
+def _residuals(column: str) -> Callable[..., dict[str, float]]:
+    """Root mean square of what a law leaves over the energy's, of each of the nine surfaces by one
+    fit.
+    """
+    return lambda history, runs: {
+        k: rms(f[SED] - f[column]) / rms(f[SED]) for k, f in _by_pressure(runs).items()
+    }
 
 
-@measure("1", named([NINE["flat"]]), beside=True)
-def fall_by_eq_4_4(history, runs):
-    """Relative fall in the hold of the energy by Eq 4-4, of each of the nine surfaces."""
-    tops = {k: ramp_end(h) for k, h in _nine(runs).items()}
-    return {
-        k: 1 - f[SED_LAW].iloc[-1] / f[SED_LAW].iloc[tops[k]] for k, f in _by_eq_4_4(runs).items()
+def _falls_by(column: str) -> Callable[..., dict[str, float]]:
+    """Relative fall in the hold of the energy by a law, of each of the nine surfaces."""
+    return lambda history, runs: {
+        k: 1 - f[column].iloc[-1] / f[column].iloc[ramp_end(runs[NINE[k]])]
+        for k, f in _by_pressure(runs).items()
     }
 
 
 @kept
-def _by_eq_4_4(runs: Histories) -> dict[str, pd.DataFrame]:
-    surfaces = _nine(runs)
-    law = fit_sum(surfaces.values(), RECEPTOR_DEPTH)
-    return {k: energy_from_pressure(h, RECEPTOR_DEPTH, law) for k, h in surfaces.items()}
+def _by_pressure(runs: Histories) -> dict[str, pd.DataFrame]:
+    laws = laws_of_sum(runs)
+    return {k: energy_from_pressure(h, RECEPTOR_DEPTH, laws) for k, h in _nine(runs).items()}
+
+
+BY_PRESSURE = tuple(
+    Measure(f"{what}_{law}", "1", read(column), named([NINE["flat"]]), beside=True)
+    for law, column in (("eq_4_4", SED_LAW), ("square", SED_SQUARE))
+    for what, read in (("residual_of", _residuals), ("fall_by", _falls_by))
+)
 
 
 def _pressure_or_energy(history: xr.Dataset) -> float:

@@ -12,30 +12,33 @@ import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH, OFFSETS, directional_index, islands
 from cysyk1999.measures.quantities import (
+    BURST_IMPULSES,
     BURST_RATE,
+    BURST_STROKES,
     BURST_TIME,
     BURST_WIDTH,
+    COUNT,
     DISTANCE,
+    DOUBLE,
     DYNAMIC,
-    FREQUENCY,
     IMPULSE_RATE,
     RATE,
+    SED_LAW,
     TIME,
+    TIME_ABOVE,
 )
 from cysyk1999.measures.responses import (
     RECEPTOR_DEPTH,
     STROKES_SHOWN,
     burst_values,
     impulses_of,
-    mean_frequency,
+    law_at,
     plate_rate,
     predicted_rate,
-    shallow_law,
     skin_sample,
     stroke_histogram,
-    stroke_law,
+    stroke_laws,
 )
-from cysyk1999.measures.runs import NINE
 from cysyk1999.receptors.fits import r_squared, rms
 from fingerpad.measures import features
 from fingerpad.measures.features import PRESSURE, Histories, energy, profile
@@ -60,21 +63,23 @@ from fingerpad.measures.strokes import (
     loaded,
     lost_contacts,
     nodes_at,
+    passages,
     passing,
     peaks,
     place,
     scaled,
     touching,
 )
-from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 from fingerpad.receptors.spikes import integrated
 
 SHALLOW = 560e-6
 """Depth (m) of the double peaks of Figs 5-22 to 5-24."""
-PROMINENCE = 0.005
-"""Least prominence of a peak of strain energy or rate, relative to the largest value while the
-convexity passes.
+PROMINENCE = 0.05
+"""Least prominence of a peak of strain energy that one sees, relative to the largest value while
+the convexity passes.
 """
+CHANCE = 2.0
+"""Least prominence of a peak of a histogram, over the root of its number of impulses."""
 SETTLED, BEGINNING = 2e-3, 5.0
 """Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its
 beginning.
@@ -215,9 +220,10 @@ def curvature_miss(stroke):
 # --- stepped and stroked, and the velocities ------------------------------------------------------
 
 
-@stroked("mm", only_ten, beside=True)
-def profile_shift(history, runs):
-    """Shift to the left of the pressure profile at each location against the stepped surface."""
+def _shifted_profiles(history: xr.Dataset, runs: Histories) -> dict[str, tuple[float, float]]:
+    """Shift (m) of the pressure profile at each location against the stepped surface, and their
+    correlation when shifted.
+    """
     found, x = {}, np.arange(-8e-3, 8e-3, 0.02e-3)
     for location in LOCATIONS:
         both = []
@@ -225,7 +231,7 @@ def profile_shift(history, runs):
             index, upper = _at_location(stroke, location), stroke["skin_y"].values > 0
             at, pressure = profile(stroke, index)
             both.append(np.interp(x, at[upper], pressure[upper]))
-        found[f"{location:g} mm"] = -1e3 * lag(x, both[0], x, both[1])[0]
+        found[f"{location:g} mm"] = lag(x, both[0], x, both[1])
     return found
 
 
@@ -267,44 +273,61 @@ def late_energy(stroke):
     return energy(stroke, SHALLOW)[distance(stroke) >= 40e-3 - 1e-9].max()
 
 
-def peaks_apart(d: np.ndarray, values: np.ndarray) -> float:
-    """Distance between the two most prominent peaks of a trace; NaN with fewer."""
+def peaks_apart(d: np.ndarray, values: np.ndarray, least: np.ndarray | float) -> float:
+    """Distance between the two most prominent peaks of a trace, each at least as prominent as the
+    `least` at its place; NaN with fewer.
+    """
     from scipy.signal import find_peaks  # here, for it is slow to import
 
-    found, properties = find_peaks(values, prominence=max(PROMINENCE * values.max(), 1e-9))
+    # of two as high as each other the first would not end at the second
+    tilted = values + 1e-6 * np.arange(len(values))
+    found, properties = find_peaks(tilted, prominence=1e-3)
+    prominences = properties["prominences"]
+    stands_out = prominences >= np.broadcast_to(least, values.shape)[found]
+    found, prominences = found[stands_out], prominences[stands_out]
     if len(found) < 2:
         return float("nan")
-    first, second = sorted(found[np.argsort(properties["prominences"])[-2:]])
+    first, second = sorted(found[np.argsort(prominences)[-2:]])
     return float(d[second] - d[first])
 
 
-def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]:
-    values, d = trace(stroke), 1e3 * distance(stroke)
+@stroked("mm", in_full)
+def energy_peaks_apart(stroke):
+    """From one of the two peaks of the strain energy at 560 um to the other, as Fig 5-24 draws it;
+    NaN where there are not two.
+    """
+    values, d = energy(stroke, SHALLOW), 1e3 * distance(stroke)
     return {
-        k: peaks_apart(d[where], values[where])
+        k: peaks_apart(d[where], values[where], PROMINENCE * values[where].max())
         for k, where in _passages(stroke).items()
         if where.any()
     }
 
 
-@kept
-def _law_at_560_um(runs: Histories) -> ImpulseRate:
-    """By the rule of `shallow_law`."""
-    return shallow_law({label: runs[scene] for label, scene in NINE.items()}, SHALLOW)[0]
+@stroked("mm", in_full, beside=True)
+def rate_peaks_apart(stroke, runs):
+    """From one of the two peaks of the histogram of Fig 5-23 to the other; NaN where there are not
+    two that are more than chance.
+    """
+    rate, impulses = impulses_of(stroke, SHALLOW, law_at(runs, SHALLOW)[0])
+    bars = stroke_histogram(rate, impulses)
+    middles, counts = bars[DISTANCE].to_numpy(), bars[COUNT].to_numpy()
+    found = {}
+    for label, (start, end) in passages(stroke).items():
+        inside = (middles >= 1e3 * start) & (middles < 1e3 * end)
+        n = counts[inside]
+        found[label] = peaks_apart(middles[inside], n, CHANCE * np.sqrt(n))
+    return found
 
 
-def _rate_at_560_um(stroke: xr.Dataset, runs: Histories) -> np.ndarray:
-    return predicted_rate(stroke, SHALLOW, _law_at_560_um(runs))[IMPULSE_RATE].to_numpy()
-
-
-_stroke_law = kept(stroke_law)
+_stroke_laws = kept(stroke_laws)
 
 
 def _by_eq_4_4(history: xr.Dataset, runs: Histories) -> tuple[np.ndarray, np.ndarray]:
     """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the
     receptor.
     """
-    law, shift = _stroke_law(runs)
+    law, shift = _stroke_laws(runs)[SED_LAW]
     s = skin_sample(history, RECEPTOR_DEPTH)
     return s.energy, s.by(law, shift)
 
@@ -323,29 +346,22 @@ def departure_of_eq_4_4(history, runs):
 
 @stroked("impulses/s", named([FULL["10"]]))
 def histogram_bin(history):
-    """Highest bin of the histogram of repeated strokes, Fig 5-19."""
-    count = STROKES_SHOWN["5-19"]
-    return stroke_histogram(*impulses_of(history, count), count)[IMPULSE_RATE].max()
+    """Highest bin of the histogram of 12 strokes, Fig 5-19."""
+    return stroke_histogram(*impulses_of(history))[IMPULSE_RATE].max()
 
 
 @stroked("impulses/s", in_full, beside=True)
 def highest_frequency(history, runs):
-    """Largest mean frequency of a receptor at 560 um from 40 mm on, as Fig 5-23 shows it."""
-    count = STROKES_SHOWN["5-23"]
-    rate, impulses = impulses_of(history, count, SHALLOW, _law_at_560_um(runs))
-    at = np.interp(np.arange(40, 80.01, 0.1), rate[DISTANCE], rate[TIME])
-    return mean_frequency(impulses, count, at)[FREQUENCY].max()
+    """Highest bin of the histogram of a receptor at 560 um from 40 mm on, Fig 5-23."""
+    bars = stroke_histogram(*impulses_of(history, SHALLOW, law_at(runs, SHALLOW)[0]))
+    return bars.loc[bars[DISTANCE] >= 40, IMPULSE_RATE].max()
 
 
 def _impulses(
-    stroke: xr.Dataset,
-    where: Mapping[str, np.ndarray],
-    column: str = IMPULSE_RATE,
-    depth: float = RECEPTOR_DEPTH,
-    law: ImpulseRate = THESIS_RATE,
+    stroke: xr.Dataset, where: Mapping[str, np.ndarray], column: str = IMPULSE_RATE
 ) -> dict[str, float]:
     """Mean numbers of impulses while conditions (time) hold at both ends of a step."""
-    frame = predicted_rate(stroke, depth, law)
+    frame = predicted_rate(stroke)
     steps = np.diff(integrated(frame[TIME], frame[column]))
     return {k: float(steps[w[1:] & w[:-1]].sum()) for k, w in where.items()}
 
@@ -354,22 +370,22 @@ def _passages(stroke: xr.Dataset) -> dict[str, np.ndarray]:
     return {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
 
 
-@stroked("impulses", in_full, beside=True)
-def impulses_at_560_um(stroke, runs):
-    """Mean number of impulses while each convexity passes."""
-    return _impulses(stroke, _passages(stroke), depth=SHALLOW, law=_law_at_560_um(runs))
+def _at_560_um(column: str) -> Callable[..., dict[str, float]]:
+    return lambda h, runs: burst_values(h, column, SHALLOW, law_at(runs, SHALLOW)[0])
 
 
 def _in_hollows(stroke: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
-    labels, hollows, at = (
-        list(convexities(stroke)),
-        [arc for arc in arcs(stroke) if arc.curvature < 0],
-        under(stroke),
-    )
-    pairs = zip(labels, labels[1:], hollows, strict=False)
-    return _impulses(
-        stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs}
-    )
+    """Mean number of impulses of the strokes that Fig 5-1 shows while each hollow is over the
+    receptor, which is `under` (time) m of the surface.
+    """
+    _, impulses = impulses_of(stroke)
+    shown = impulses.loc[impulses["trial"] <= STROKES_SHOWN["5-1"], DISTANCE].to_numpy() * 1e-3
+    at = np.interp(shown, distance(stroke), under(stroke))
+    labels, hollows = list(convexities(stroke)), [a for a in arcs(stroke) if a.curvature < 0]
+    return {
+        f"{a} to {b}": np.sum((at >= arc.start) & (at < arc.end)) / STROKES_SHOWN["5-1"]
+        for a, b, arc in zip(labels, labels[1:], hollows, strict=False)
+    }
 
 
 @stroked("%", in_full)
@@ -382,16 +398,18 @@ def dynamic_share(stroke):
 
 @stroked("mm", in_full)
 def rate_after_energy_rate(stroke):
-    """Stroke distance from the peak of the energy's rate to that of the predicted rate, while each
-    convexity passes.
+    """Stroke distance from the bin that holds the peak of the energy's rate to the highest bin of
+    the histogram of Fig 5-19, while each convexity passes; NaN without an impulse.
     """
-    frame, apart = predicted_rate(stroke), {}
-    for label, where in _passages(stroke).items():
-        part = frame[where]
-        first, second = (
-            part[DISTANCE].loc[part[column].idxmax()] for column in (RATE, IMPULSE_RATE)
+    frame, impulses = impulses_of(stroke)
+    bars, apart = stroke_histogram(frame, impulses), {}
+    for label, (start, end) in passages(stroke).items():
+        part, inside = (
+            each[each[DISTANCE].between(1e3 * start, 1e3 * end)] for each in (frame, bars)
         )
-        apart[label] = second - first
+        felt = part[DISTANCE].loc[part[RATE].idxmax()]
+        answered = inside[DISTANCE].loc[inside[COUNT].idxmax()] if inside[COUNT].any() else np.nan
+        apart[label] = answered - bars[DISTANCE].iloc[int(abs(bars[DISTANCE] - felt).argmin())]
     return apart
 
 
@@ -460,27 +478,23 @@ CONVEXITIES = (
     # largest value at the centre, and 915 um under it, while the convexity passes
     Stroke("convexity_pressure", "Pa", lambda h: peaks(h, features.centre_pressure), wavy),
     Stroke("convexity_energy", "Pa", lambda h: peaks(h, energy_at(RECEPTOR_DEPTH)), wavy),
-    # from one of the two peaks 560 um under the centre to the other; NaN where there are not two
-    Stroke("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
-    Stroke(
-        "rate_peaks_apart",
-        "mm",
-        lambda h, runs: _double_peaks(h, partial(_rate_at_560_um, runs=runs)),
-        in_full,
-        beside=True,
-    ),
     *(
         Stroke(name, unit, lambda h, column=column: burst_values(h, column), waves)
         for name, unit, column in (
             ("burst_width", "mm", BURST_WIDTH),
             ("burst_time", "s", BURST_TIME),
             ("burst_rate", "impulses/s", BURST_RATE),
+            ("burst_strokes", "count", BURST_STROKES),
+            ("energy_time", "s", TIME_ABOVE),
             ("convexity_rate", "impulses/s", f"largest {IMPULSE_RATE}"),
             ("convexity_energy_rate", "Pa/s", f"largest {RATE}"),
         )
     ),
-    # mean numbers of impulses at the distances of each hollow, and while the centre of the skin,
-    # dragged back, is under it
+    # 560 um deep: impulses of a stroke, and how many strokes of Fig 5-22 are two bursts
+    Stroke("impulses_at_560_um", "impulses", _at_560_um(BURST_IMPULSES), in_full, beside=True),
+    Stroke("double_bursts", "count", _at_560_um(DOUBLE), in_full, beside=True),
+    # impulses of a stroke at the distances of each hollow, and while it is over the centre of the
+    # skin, which is dragged back
     Stroke("impulses_in_hollows", "impulses", lambda h: _in_hollows(h, distance), in_full),
     Stroke("impulses_under_hollows", "impulses", lambda h: _in_hollows(h, place), in_full),
 )
@@ -488,6 +502,20 @@ CONVEXITIES = (
 TRACES = (
     Stroke("curvature_factor", "Pa m", lambda h: _scaled_curvature(h)[1], wavy),
     # of the centre pressure behind that of the stepped surface, and their correlation when shifted
+    Stroke(
+        "profile_shift",
+        "mm",
+        lambda h, runs: {k: -1e3 * s for k, (s, _) in _shifted_profiles(h, runs).items()},
+        only_ten,
+        beside=True,
+    ),
+    Stroke(
+        "profile_likeness",
+        "1",
+        lambda h, runs: {k: r for k, (_, r) in _shifted_profiles(h, runs).items()},
+        only_ten,
+        beside=True,
+    ),
     Stroke("lag_of_stepped", "mm", lambda h, runs: 1e3 * _lag(h, runs)[0], only_ten, beside=True),
     Stroke("likeness_of_stepped", "1", lambda h, runs: _lag(h, runs)[1], only_ten, beside=True),
     Stroke(
@@ -497,7 +525,7 @@ TRACES = (
     Stroke(
         "receptor_shift",
         "mm",
-        lambda h, runs: 1e3 * _stroke_law(runs)[1],
+        lambda h, runs: 1e3 * _stroke_laws(runs)[SED_LAW][1],
         named([FULL["10"]]),
         beside=True,
     ),

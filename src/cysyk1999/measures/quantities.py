@@ -155,6 +155,7 @@ SCALED_CURVATURE = Q(
 
 SED = Q("strain_energy_density", "Pa", "strain energy density (Pa)", tolerance=2e-3)
 SED_LAW = Q("strain_energy_by_eq_4_4", "Pa", tolerance=5e-3)
+SED_SQUARE = Q("strain_energy_by_square_of_weighted_pressure", "Pa", tolerance=5e-3)
 RATE = Q("strain_energy_rate", "Pa/s", "strain energy rate (Pa/s)", tolerance=5e-3)
 IMPULSE_RATE = Q("predicted_rate", "impulses/s", "predicted rate (impulses/s)", tolerance=1e-2)
 STATIC = Q("rate_from_energy", "impulses/s", tolerance=1e-2)
@@ -167,6 +168,12 @@ GIVEN_RATE = Q("impulse_rate", "impulses/s", "mean rate of the hold (impulses/s)
 STEADY_RATE = Q("steady_rate", "impulses/s", "steady rate (impulses/s)", tolerance=1e-2)
 BURST_WIDTH = Q("burst_width", "mm", "predicted burst width (mm)", tolerance=1e-2)
 BURST_TIME = Q("burst_duration", "s", "predicted duration (s)", tolerance=1e-2)
+COUNT = Q("impulses", "1", tolerance=1e-2)
+BURST_IMPULSES = Q("burst_impulses", "1", tolerance=1e-2)
+BURST_STROKES = Q("strokes_with_a_burst", "1", tolerance=1e-2)
+DOUBLE = Q("strokes_with_two_bursts", "1", tolerance=1e-2)
+TIME_ABOVE = Q("time_above_threshold", "s", "duration (s)", tolerance=1e-2)
+ENERGY_FACTOR = Q("energy_factor", "1", tolerance=2e-3)
 BURST_RATE = Q("burst_rate", "impulses/s", "predicted burst rate (impulses/s)", tolerance=1e-2)
 
 QUANTITIES: dict[str, Q] = {str(q): q for q in list(globals().values()) if isinstance(q, Q)}

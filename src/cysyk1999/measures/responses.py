@@ -13,13 +13,18 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.measures.energy_of_1999 import ELASTIC
 from cysyk1999.measures.quantities import (
     BELOW_EDGE,
+    BURST_IMPULSES,
     BURST_RATE,
+    BURST_STROKES,
     BURST_TIME,
     BURST_WIDTH,
+    COUNT,
     CURVATURE,
     DISTANCE,
+    DOUBLE,
     DYNAMIC,
     EDGE_DISTANCE,
     FREQUENCY,
@@ -30,12 +35,23 @@ from cysyk1999.measures.quantities import (
     RATE,
     SED,
     SED_LAW,
+    SED_SQUARE,
     STATIC,
     TIME,
+    TIME_ABOVE,
     P,
 )
 from cysyk1999.measures.runs import NINE
-from cysyk1999.receptors.fits import SkinSample, constant_shift, linear, r_squared, spatial_sum
+from cysyk1999.receptors.fits import (
+    EQ_4_4,
+    SQUARE,
+    SkinSample,
+    constant_shift,
+    linear,
+    r_squared,
+    spatial_sum,
+)
+from fingerpad.measures.bursts import BIN, burst, is_double
 from fingerpad.measures.features import (
     PRESSURE,
     Histories,
@@ -48,8 +64,7 @@ from fingerpad.measures.features import (
 )
 from fingerpad.measures.kept import kept
 from fingerpad.measures.measure import speed_of, waves
-from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import FULL, convexities, distance, loaded, passage, place
+from fingerpad.measures.strokes import FULL, convexities, distance, loaded, passages
 from fingerpad.receptors.laws import (
     THESIS_RATE,
     ImpulseRate,
@@ -58,7 +73,6 @@ from fingerpad.receptors.laws import (
     rate_by_leg,
     time_above,
 )
-from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
 from fingerpad.results import scene_of
 
@@ -81,10 +95,9 @@ SEED = 1999
 """Of every predicted raster: the same pictures every time."""
 ASIDE = 46e-6
 """m; to the right of the centre, where section 5.5 has one of its receptors."""
-STROKES_SHOWN = {"5-1": 10, "5-19": 12, "5-22": 4, "5-23": 12, "5-27": 10}
-"""Repeated strokes that the thesis's figures show or average."""
-BIN = 0.5e-3
-"""m; bins of the thesis's histograms over a stroke."""
+STROKES = 12
+"""Repeated strokes that the thesis averages; of predicted ones its figures show the first."""
+STROKES_SHOWN = {"5-1": 10, "5-22": 4, "5-27": 10}
 
 
 def curvature_of(history: xr.Dataset) -> float:
@@ -152,31 +165,52 @@ def skin_shift(history: xr.Dataset) -> np.ndarray:
     return history["centre_lateral_displacement"].values
 
 
-def fit_sum(histories: Iterable[xr.Dataset], depth: float, with_depth: bool = True) -> SpatialSum:
-    """Eq 4-4 closest to the strain energy at a depth (m) under the centre of pressed surfaces."""
-    return spatial_sum([skin_sample(history, depth) for history in histories], with_depth)
+LAWS_OF_SUM = {SED_LAW: EQ_4_4, SED_SQUARE: SQUARE}
+"""Laws that predict the strain energy from the pressure (Fig 4-22), by their column."""
 
 
-def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[SpatialSum, float]:
-    """Eq 4-4 of the nine pressed surfaces, and the constant shift (m) with which it comes closest
-    to the stroke at 10 mm/s.
+def fit_sum(
+    histories: Iterable[xr.Dataset], depth: float, constants: Sequence[str] = EQ_4_4
+) -> SpatialSum:
+    """A law of pressure closest to the strain energy at a depth (m) under the centre of pressed
+    surfaces.
+    """
+    return spatial_sum([skin_sample(history, depth) for history in histories], constants)
+
+
+def laws_of_sum(histories: Histories, depth: float = RECEPTOR_DEPTH) -> dict[str, SpatialSum]:
+    """`LAWS_OF_SUM`, each fitted to the nine pressed surfaces; KeyError if one is missing."""
+    nine = [histories[scene] for scene in NINE.values()]
+    return {column: fit_sum(nine, depth, law) for column, law in LAWS_OF_SUM.items()}
+
+
+def stroke_laws(
+    histories: Histories, depth: float = RECEPTOR_DEPTH
+) -> dict[str, tuple[SpatialSum, float]]:
+    """`laws_of_sum`, each with the constant shift (m) with which it comes closest to the stroke at
+    10 mm/s.
 
     Raises KeyError if one of them was not simulated.
     """
-    law = fit_sum([histories[scene] for scene in NINE.values()], depth)
-    return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
+    stroke = skin_sample(histories[FULL["10"]], depth)
+    laws = laws_of_sum(histories, depth)
+    return {column: (law, constant_shift(law, stroke)) for column, law in laws.items()}
 
 
 def energy_from_pressure(
-    history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0
+    history: xr.Dataset,
+    depth: float,
+    laws: Mapping[str, SpatialSum],
+    shift: np.ndarray | float = 0.0,
 ) -> pd.DataFrame:
-    """Strain energy density at a depth (m) as simulated and by Eq 4-4 (Figs 4-22 and 5-14).
+    """Strain energy density at a depth (m) as simulated and by laws of the pressure (Fig 4-22).
 
-    shift: m, of the receptor to the side: a constant, or `skin_shift`.
+    laws: by the column of what they predict. shift: m, of the receptor to the side: a constant, or
+    `skin_shift`.
     """
     sample = skin_sample(history, depth)
-    time, by_law = history["time"].values, sample.by(law, shift)
-    frame = pd.DataFrame({TIME: time, SED: sample.energy, SED_LAW: by_law})
+    by_law = {column: sample.by(law, shift) for column, law in laws.items()}
+    frame = pd.DataFrame({TIME: history["time"].values, SED: sample.energy} | by_law)
     if is_stroke(history):
         frame[DISTANCE] = history["stroke_distance"].values * 1e3
     return frame
@@ -319,16 +353,6 @@ def _by_leg(history: xr.Dataset, values: np.ndarray) -> tuple[np.ndarray, ...]:
     return rate_by_leg(history["time"].values, values, history["leg"].values)
 
 
-def rapidly_adapting_rate(history: xr.Dataset, law: RapidlyAdapting) -> pd.DataFrame:
-    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the
-    centre: columns time, curvature (1/m, of the deformed skin), its rate, and the impulse rate.
-    """
-    values = skin_curvature(history, centre_node(history))
-    time, values, rate = _by_leg(history, values)
-    columns = {TIME: time, CURVATURE: values, "curvature_rate (1/m/s)": rate}
-    return pd.DataFrame({**columns, IMPULSE_RATE: law(rate)})
-
-
 def raster(
     frame: pd.DataFrame, repetitions: int, seed: int, variation: float = VARIATION
 ) -> pd.DataFrame:
@@ -346,17 +370,15 @@ def raster(
     return out
 
 
+@kept
 def impulses_of(
-    history: xr.Dataset,
-    repetitions: int,
-    depth: float = RECEPTOR_DEPTH,
-    law: ImpulseRate = THESIS_RATE,
+    stroke: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Predicted rate of a stroke from where it begins to slide, and the impulses of some
-    repetitions of it.
+    """Predicted rate of a stroke from where it begins to slide, and the impulses of `STROKES`
+    repetitions of it (`raster`): those of every figure and number of a stroke.
     """
-    frame = predicted_rate(loaded(history), depth, law)
-    return frame, raster(frame, repetitions, SEED)
+    frame = predicted_rate(loaded(stroke), depth, law)
+    return frame, raster(frame, STROKES, SEED)
 
 
 def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
@@ -368,10 +390,13 @@ def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
 
 
 def stroke_histogram(
-    frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN
+    frame: pd.DataFrame,
+    impulses: pd.DataFrame,
+    repetitions: int = STROKES,
+    bin_width: float = BIN,
 ) -> pd.DataFrame:
-    """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the
-    bin's middle), predicted_rate.
+    """Impulses of a raster in bins of the stroke distance (m): columns stroke_distance (of the
+    bin's middle), impulses (of all strokes), predicted_rate (mean).
 
     Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of
     so many `repetitions`.
@@ -380,8 +405,10 @@ def stroke_histogram(
     slides[:-1] |= slides[1:]
     distance, time = frame[DISTANCE].to_numpy()[slides] * 1e-3, frame[TIME].to_numpy()[slides]
     edges = np.arange(distance[0], distance[-1] + 1e-9, bin_width)
-    rate = binned_rate([impulses[TIME].to_numpy()], np.interp(edges, distance, time)) / repetitions
-    return pd.DataFrame({DISTANCE: (edges[1:] + edges[:-1]) / 2 * 1e3, IMPULSE_RATE: rate})
+    times = np.interp(edges, distance, time)
+    rate = binned_rate([impulses[TIME].to_numpy()], times)  # of all strokes together
+    columns = {DISTANCE: (edges[1:] + edges[:-1]) / 2 * 1e3, COUNT: np.rint(rate * np.diff(times))}
+    return pd.DataFrame(columns | {IMPULSE_RATE: rate / repetitions})
 
 
 def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> pd.DataFrame:
@@ -445,22 +472,24 @@ def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
     return windowed(history, history["time"].values, centre_pressure(history), window)
 
 
-def shallow_law(
-    histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPTH
-) -> tuple[ImpulseRate, float]:
-    """Eq 5-1 for another depth (m) than the thesis's, and the factor its energies are multiplied
-    by; histories: of the nine.
+def law_at(runs: Histories, depth: float) -> tuple[ImpulseRate, float]:
+    """Eq 5-1 at a depth (m), and the factor that its energies are multiplied by; runs: histories by
+    scene, the nine pressed surfaces (`NINE`) among them. Raises KeyError for one that is not there.
 
-    The thesis's constants belong to 915 um and it prints none for 560 or 600 um. Energies there are
-    scaled by one number, with which the mean over surfaces of the mean energy in the hold is the
-    same at both depths: what differs is how they depend on curvature. So do all rates that are
-    predicted from another depth, pressed (Figs 4-27, 4-29) and stroked (5-22, 5-23).
+    The thesis's constants belong to 915 um, where the factor is 1; it prints none for 560 or 600
+    um. Energies at another depth are multiplied by one number, with which the mean over the nine
+    surfaces of the mean energy in the hold is that at 915 um: what differs is how they depend on
+    curvature. So are all rates that are predicted from another depth, pressed (Figs 4-27, 4-29) and
+    stroked (5-22, 5-23).
     """
-    deep, shallow = (
-        np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in histories.values()])
-        for z in (RECEPTOR_DEPTH, depth)
-    )
-    factor, law = float(deep / shallow), THESIS_RATE
+    law, factor = THESIS_RATE, 1.0
+    if depth != RECEPTOR_DEPTH:
+        held = [runs[scene] for scene in NINE.values()]
+        deep, shallow = (
+            np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in held])
+            for z in (RECEPTOR_DEPTH, depth)
+        )
+        factor = float(deep / shallow)
     thresholds = law.threshold / factor, law.rate_threshold / factor
     return ImpulseRate(law.per_energy * factor, law.per_rate * factor, *thresholds), factor
 
@@ -476,62 +505,55 @@ def straight_line(x, y) -> tuple[float, float, float]:
 
 @kept
 def bursts(
-    history: xr.Dataset,
-    depth: float = RECEPTOR_DEPTH,
-    law: ImpulseRate = THESIS_RATE,
-    threshold: float | None = None,
+    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
 ) -> pd.DataFrame:
-    """The burst that each convexity of a stroked surface makes (Figs 5-2 to 5-4, 5-16 and 5-17).
-
-    A convexity passes while the point of the skin over the receptor is between the middles of the
-    hollows on either side of it (the flats count up to where the first arc begins and the last one
-    ends, and as far again as the half of the arc). Its burst is the time in that passage during
-    which the strain energy is above `threshold` (Pa; left out, that of the law), crossings found
-    between outputs; width is that time by the stroking velocity. The burst rate is the mean
-    predicted rate over that time: impulses over duration.
+    """The burst that each convexity of a stroked surface evokes in the predicted strokes of
+    `impulses_of` (Figs 5-2 to 5-4, 5-16, 5-17, 5-22), by `fingerpad.measures.bursts.burst`: what a
+    recording would be asked.
 
     Returns
     -------
     pd.DataFrame
-        One row a convexity: its label and curvature, burst width, duration and rate, the largest
-        strain energy, energy rate and impulse rate.
+        One row a convexity, in its `fingerpad.measures.strokes.passages`: its label and curvature;
+        width, duration (width by velocity), rate, impulses and strokes of its burst; how many of
+        the strokes that Fig 5-22 shows are two bursts; how long the strain energy is above the
+        threshold of the law; the largest strain energy, energy rate and predicted rate.
     """
-    frame = predicted_rate(history, depth, law)
-    level = law.threshold if threshold is None else threshold
-    moving = frame[DISTANCE].to_numpy() > frame[DISTANCE].iloc[0]
-    frame = frame[moving]
-    time, distance = frame[TIME].to_numpy(), frame[DISTANCE].to_numpy() * 1e-3
-    speed = (distance[-1] - distance[0]) / (time[-1] - time[0])
-    under = np.interp(time, history["time"].values, place(history))
-    rows = []
-    for label, arc in convexities(history).items():
-        start, end = passage(history, arc, beyond=0.5)
-        part = frame[(under >= start) & (under <= end)]
-        if len(part) < 2:
-            continue
-        t, value, rate = part[TIME].to_numpy(), part[SED].to_numpy(), part[IMPULSE_RATE].to_numpy()
-        duration = time_above(t, value, level)
-        # the rate while the energy is above the level
-        fine = np.linspace(t[0], t[-1], 20 * len(t))
-        above = np.interp(fine, t, value) > level
+    rate, impulses = impulses_of(history, depth, law)
+    trains = [1e-3 * impulses.loc[impulses["trial"] == k + 1, DISTANCE] for k in range(STROKES)]
+    speed, rows = speed_of(scene_of(history)), []
+    arcs = convexities(history)
+    for label, (start, end) in passages(loaded(history)).items():
+        part = rate[rate[DISTANCE].between(1e3 * start, 1e3 * end)]
+        found = burst(trains, speed, start, end)
+        shown = (train[train.between(start, end)] for train in trains[: STROKES_SHOWN["5-22"]])
         rows.append(
             {
                 "convexity": label,
-                CURVATURE: arc.curvature,
-                BURST_TIME: duration,
-                BURST_WIDTH: duration * speed * 1e3,
-                BURST_RATE: float(np.interp(fine, t, rate)[above].mean()) if above.any() else 0.0,
-                f"largest {SED}": float(value.max()),
-                f"largest {RATE}": float(part[RATE].max()),
-                f"largest {IMPULSE_RATE}": float(rate.max()),
+                CURVATURE: arcs[label].curvature,
+                BURST_WIDTH: 1e3 * found.width,
+                BURST_TIME: found.width / speed,
+                BURST_RATE: found.rate,
+                BURST_IMPULSES: found.impulses,
+                BURST_STROKES: found.strokes,
+                DOUBLE: sum(map(is_double, shown)),
+                TIME_ABOVE: time_above(part[TIME], part[SED], law.threshold),
+                f"largest {SED}": part[SED].max(),
+                f"largest {RATE}": part[RATE].max(),
+                f"largest {IMPULSE_RATE}": part[IMPULSE_RATE].max(),
             }
         )
     return pd.DataFrame(rows)
 
 
-def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
+def burst_values(
+    stroke: xr.Dataset,
+    column: str,
+    depth: float = RECEPTOR_DEPTH,
+    law: ImpulseRate = THESIS_RATE,
+) -> dict[str, float]:
     """A column of `bursts` by the convexity's label."""
-    found = bursts(stroke)
+    found = bursts(stroke, depth, law)
     return dict(zip(found["convexity"], found[column], strict=True))
 
 
@@ -544,7 +566,8 @@ def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
 
 
 CANDIDATES = {
-    "strain energy, instantaneous elastic": ("strain_energy_density", "Pa", True),
+    "strain energy, formula of plane stress": ("strain_energy_density", "Pa", True),
+    "strain energy, instantaneous elastic": (ELASTIC, "Pa", True),
     "strain energy, long-term moduli": ("strain_energy_long_term_moduli", "Pa", True),
     "strain energy, half stress x strain": ("strain_energy_half_stress_strain", "Pa", True),
     "strain energy, recoverable": ("strain_energy_recoverable", "Pa", True),

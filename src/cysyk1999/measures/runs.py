@@ -57,6 +57,10 @@ class Runs(Mapping[str, str]):
         """Some of them, in the order asked for. Raises KeyError for an unknown name."""
         return replace(self, scenes={name: self.scenes[name] for name in names})
 
+    def are_in(self, histories: Histories) -> bool:
+        """Whether all of them are there."""
+        return all(scene in histories for scene in self.scenes.values())
+
     def without_companions(self) -> Runs:
         """The same, read without their coarse companions."""
         return replace(self, companions=())
@@ -96,6 +100,14 @@ LOWER = {
     force: surfaces(f"press{force}", ("flat", "79", "158", "315", "630")) for force in (10, 15)
 }
 """Five surfaces pressed to less, by force in gram-weight."""
+
+SPHERES = {
+    force: surfaces(f"spheres_{force}", ("flat", "81", "172", "256", "340", "521", "694"))
+    for force in (10, 15, 20)
+}
+"""A plate and spheres as Goodwin pressed them, on the pad as a body of revolution, by force in
+gram-weight.
+"""
 
 PADS = Runs("pad", {"homogeneous": "homogeneous_flat", "layered": "ramp40_flat"})
 """The flat plate on two pads."""

@@ -212,5 +212,5 @@ def read_measures(path: str | PathLike) -> pd.DataFrame:
 
 def measure(job: SimpleNamespace) -> None:
     """Job: `histories`, `meshes`, `coarse` -> `measures`."""
-    histories, meshes, coarse = read_results([*job.histories, *job.meshes, *job.coarse])
+    histories, meshes, coarse = read_results([*job.histories, *job.meshes, *job.coarse], True)
     write_measures(measures_table(histories, coarse, meshes), job.measures[0])

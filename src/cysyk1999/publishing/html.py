@@ -16,6 +16,7 @@ from fingerpad.files import write_text
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff;
   margin: 1.2rem 1.6rem; }
+h1, p, footer, li { overflow-wrap: anywhere; }
 h1 { font-size: 1.25rem; } h2 { font-size: 1.05rem; }
 img { display: block; max-width: 100%; max-height: 82vh; margin: 0.6rem 0; }
 table { border-collapse: collapse; font-size: 0.85rem; }
@@ -28,7 +29,8 @@ footer { margin-top: 1rem; color: #555; font-size: 0.85rem; }
 
 def page(title: str, *parts: str) -> str:
     """A page of some parts, HTML each, under a title."""
-    head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{STYLE}</style>'
+    head = '<meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+    head += f"<title>{html.escape(title)}</title><style>{STYLE}</style>"
     body = "\n".join([f"<h1>{html.escape(title)}</h1>", *filter(None, parts)])
     return f'<!doctype html>\n<html lang="en"><head>{head}</head><body>\n{body}\n</body></html>\n'
 

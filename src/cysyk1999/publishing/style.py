@@ -2,10 +2,11 @@
 and note, direct labels.
 
 Pages follow the journals' widths (89 mm a column, 183 mm a page, 170 mm tall at most) with one face
-at 7 pt, DejaVu Sans, which matplotlib ships. Colours mean one thing each (`MEANINGS`): curvatures
-are one sequence from dark blue to ochre that is even in the logarithm and keeps its order in grey
-and for colour-blind readers; what has no order wears the colours of Okabe and Ito (2008), darkened
-where they are too pale for a line, and a line style and a marker besides. Text is never coloured.
+at 6 to 7 pt: Arimo, which is as wide as Arial. Colours mean one thing each (`MEANINGS`): curvatures
+are one sequence from navy to orange whose lightness keeps its order in grey and for colour-blind
+readers; what has no order wears the colours of Okabe and Ito (2008), darkened where they are too
+pale for a line, and a line style and a marker besides. What was measured is green, what the thesis
+shows is olive, and neither is used for the model. Text is never coloured.
 """
 
 from __future__ import annotations
@@ -13,35 +14,67 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from functools import wraps
+from functools import cache, wraps
+from importlib.util import find_spec
+from pathlib import Path
 from string import ascii_lowercase
 
 import numpy as np
+from fontTools.ttLib import TTFont
+from fontTools.varLib.instancer import instantiateVariableFont
+from matplotlib import get_cachedir
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import to_hex, to_rgba_array
 from matplotlib.figure import Figure
+from matplotlib.font_manager import fontManager
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 from matplotlib.patheffects import withStroke
 from matplotlib.style import context
 from matplotlib.ticker import ScalarFormatter
+from matplotlib.transforms import Affine2D
 from pandas import DataFrame
 from scipy.optimize import isotonic_regression
+
+from fingerpad.files import write_atomically
 
 INCH = 25.4  # mm
 PAGE_WIDTH, COLUMN_WIDTH, TALLEST = 183 / INCH, 89 / INCH, 170 / INCH  # inch, of a journal's page
 NOTE_SIZE = 6.0  # pt
-NOTE_WIDTH = 152  # characters of a footnote's line on a page
-INK, GREY, PALE, BAND = "0.15", "0.42", "0.8", "0.955"
+NOTE_WIDTH = 182  # characters of a footnote's line on a page
+INK, GREY, PALE, BAND = "0.15", "0.42", "0.8", "#f8f3df"
 """Text and what is not told apart; remarks and references; solids beyond the skin; the thesis's
 range.
 """
-HIGHLIGHT = "#00785a"
-"""The second of two curves, whatever it is: no surface, speed or force is green."""
+HIGHLIGHT, MEASURED, THESIS = "#0072b2", "#00785a", "#7a6000"
+"""The second of two curves of the model, whatever it is; what was measured; what the thesis's axes
+show.
+"""
+
+
+@cache
+def families() -> list[str]:
+    """Families that text is set in: Arimo, if its package is there, and DejaVu Sans for what that
+    lacks.
+
+    The package holds one file for all weights, of which matplotlib reads only the lightest: the
+    regular and the bold face are written beside matplotlib's own list of fonts.
+    """
+    if (package := find_spec("fontpkg_arimo")) is None:
+        return ["DejaVu Sans"]
+    (whole,) = Path(package.origin).parent.glob("files/Arimo[[]wght[]].ttf")
+    for name, weight in (("Regular", 400), ("Bold", 700)):
+        face = Path(get_cachedir()) / f"Arimo-{name}.ttf"
+        if not face.exists():
+            font = instantiateVariableFont(TTFont(whole), {"wght": weight}, updateFontNames=True)
+            write_atomically(face, font.save)
+        fontManager.addfont(face)
+    return ["Arimo", "DejaVu Sans"]
+
 
 RC = {
-    "font.family": "DejaVu Sans",
     "font.size": 7,
     "axes.titlesize": 7,
     "axes.labelsize": 7,
@@ -76,10 +109,13 @@ RC = {
     "savefig.facecolor": "white",
     "axes.formatter.limits": (-4, 5),
     "pdf.fonttype": 42,
-    "mathtext.fontset": "dejavusans",
+    "mathtext.fontset": "custom",
+    "mathtext.fallback": "stixsans",
     "hatch.linewidth": 0.4,
     "errorbar.capsize": 1.5,
 }
+SMALLEST = 6.0
+"""pt, of any text but exponents."""
 
 SOLID, DASHED, DOTTED = "-", (0, (4, 1.8)), (0, (1, 1.4))
 DASH_DOT, LONG = (0, (4, 1.5, 1, 1.5)), (0, (8, 2))
@@ -90,21 +126,21 @@ Look = Mapping[str, object]
 # --- what colours mean ----------------------------------------------------------------------------
 
 COLOURS = {
-    "flat": "#01287b",
-    "26": "#422a79",
-    "39": "#5d2b77",
-    "52": "#712d73",
-    "79": "#8d306d",
-    "105": "#9c3367",
-    "158": "#b0385c",
-    "210": "#bc3e55",
-    "315": "#c74c49",
-    "420": "#cc573f",
-    "630": "#d06731",
-    "1260": "#ca8605",
+    "flat": "#001b40",
+    "26": "#001d5e",
+    "39": "#1d1976",
+    "52": "#421477",
+    "79": "#610976",
+    "105": "#83006e",
+    "158": "#9f0064",
+    "210": "#ba0059",
+    "315": "#cf1c4b",
+    "420": "#dc3c3b",
+    "630": "#e2592a",
+    "1260": "#e37513",
 }
-"""Of curvatures in 1/m: lightness from 20 to 61, where a line on white still has a contrast of 3,
-even in their logarithm.
+"""Of curvatures in 1/m: lightness from 10 to 61, where a line on white still has a contrast of 3,
+in steps of five between the nine surfaces.
 """
 CATEGORIES = ("#0072b2", "#d55e00", "#009e73", "#b5588f", "#7a6000", "#404040")
 """Okabe and Ito's blue, vermilion and green; their purple and yellow as dark as a line needs; and
@@ -140,7 +176,9 @@ MEANINGS: Mapping[str, Mapping[str, Look]] = {
         ("#402613", "#6c4428", "#99633b", "#c48151"),
         (DOTTED, DASH_DOT, DASHED, SOLID),
     ),
-    "subject": _looks(("1", "2", "3", "4", "mean"), (*CATEGORIES[:4], INK)),
+    "subject": _looks(
+        ("1", "2", "3", "4", "mean"), ("#004d3b", "#006c54", "#008c6e", "#3aa583", INK)
+    ),
     "energy": _looks(
         (
             "instantaneous elastic",
@@ -191,8 +229,8 @@ def look_of(meaning: str, name: str, *parts: str) -> dict[str, object]:
 
 
 def curvature_colour(curvature: float) -> str:
-    """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its
-    logarithm between these.
+    """Colour of any curvature (1/m; a plate: 0) between those of `COLOURS`, linear in its
+    logarithm.
     """
     known = np.log([13.0, *(float(name) for name in COLOURS if name != "flat")])
     at = np.log(max(curvature, 1.0))  # np.interp stays within the ends
@@ -228,7 +266,9 @@ def theme() -> AbstractContextManager:
     """Matplotlib's own defaults with this style on top; the caller's settings come back
     afterwards.
     """
-    return context(RC, after_reset=True)
+    faces = families()
+    mathematics = {f"mathtext.{style}": faces[0] for style in ("rm", "it", "bf", "sf", "cal", "tt")}
+    return context(RC | mathematics | {"font.family": faces}, after_reset=True)
 
 
 def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
@@ -248,40 +288,75 @@ def sheet(
     title: str,
     note: Sequence[str],
     height: float,
-    number: str = "",
     laid_out: bool = True,
     width: float = PAGE_WIDTH,
+    shows: str = "",
+    mark: str = "",
+    icon: str = "",
 ) -> Figure:
-    """Empty figure of a height and width (inch): title above, after the thesis's number if it has
-    one, the note's lines below.
+    """Empty figure of a height and width (inch): the title, which is its finding, above, and below
+    it what it `shows`; at the right a verdict's `mark` and an `icon` (:func:`draw_icon`); the
+    note's lines at the foot.
 
     Panels are laid out in between, unless the caller does so (not `laid_out`).
     """
     fig = Figure(figsize=(width, height), layout="constrained" if laid_out else None)
-    left, top, lines = 0.08 / width, {"y": 1 - 0.07 / height, "va": "top"}, 1
-    bold = f"after Cysyk 1999, Fig. {number}" if number else title
-    fig.text(left, s=bold, fontweight="bold", **top)
-    if number and width > 1.2 * COLUMN_WIDTH:  # the title beside the number, or below it
-        fig.text(left + 1.66 / width, s=title, **top)
-    elif number:
-        titled = textwrap.wrap(title, 58)
-        lines += len(titled)
-        fig.text(left, s="\n".join(titled), **top | {"y": 1 - 0.2 / height})
+    left, line = 0.08 / width, 0.128 / height
+    if icon:
+        draw_icon(fig, icon)
+    free = width - 0.16 - 0.46 * bool(icon)
+    lines = textwrap.wrap(title, round(20.5 * free))
+    top = {"va": "top", "linespacing": 1.2}
+    fig.text(left, 1 - 0.06 / height, "\n".join(lines), fontweight="bold", **top)
+    small = {"fontsize": NOTE_SIZE, "color": GREY}
+    under = 1 - 0.08 / height - line * len(lines)
+    shown = textwrap.wrap(shows, round(23.5 * free))
+    fig.text(left, under, "\n".join(shown), **small, **top)
+    if mark and width > 1.2 * COLUMN_WIDTH:  # the verdict beside what it is on, or below it
+        right = 1 - left - 0.5 * bool(icon) / width
+        fig.text(right, under, mark, **small | {"color": INK}, ha="right", **top)
+    elif mark:
+        shown.append(mark)
+        place = under - 0.105 * (len(shown) - 1) / height
+        fig.text(left, place, mark, **small | {"color": INK}, **top)
     if laid_out:
-        above, below = 0.11 + 0.125 * lines, 0.125 * len(note) + 0.07
+        above, below = 0.13 + 0.128 * len(lines) + 0.105 * len(shown), 0.115 * len(note) + 0.07
         rect = (0.005, below / height, 0.99, 1 - (above + below) / height)
-        pads = {"w_pad": 0.04, "hspace": 0.04} if number else {"w_pad": 0.05}
+        pads = {"w_pad": 0.04, "hspace": 0.04} if shows else {"w_pad": 0.05}
         fig.get_layout_engine().set(rect=rect, h_pad=0.04, **pads)
-    small = {"fontsize": NOTE_SIZE, "color": GREY, "linespacing": 1.35}
-    fig.text(left, 0.05 / height, "\n".join(note), va="bottom", **small)
+    fig.text(left, 0.05 / height, "\n".join(note), va="bottom", linespacing=1.3, **small)
     return fig
 
 
 def study_figure(
     title: str, note: Sequence[str], height: float, width: float = PAGE_WIDTH
 ) -> Figure:
-    """`sheet` of a study: a bold title, the note's paragraphs wrapped."""
+    """`sheet` of a study: its finding as title, the note's paragraphs wrapped."""
     return sheet(title, wrapped(note, note_width(width)), height, width=width)
+
+
+def draw_icon(fig: Figure, kind: str) -> None:
+    """What is done to the finger, in the upper right corner of a page: words ``press`` (an arrow
+    down) or ``stroke`` (a wavy surface, an arrow across), and ``receptor`` (a dot below the skin)
+    if that is what answers.
+    """
+    width, height = fig.get_size_inches()
+    place = Affine2D().translate(width - 0.3, height - 0.36) + fig.dpi_scale_trans
+    own = {"transform": place, "lw": 0.6, "zorder": 5}
+
+    def area(x: np.ndarray, y: np.ndarray, colour: str) -> None:
+        fig.add_artist(Polygon(np.c_[x, y], fc=colour, ec=INK, **own))
+
+    x = np.linspace(-1, 1, 41)
+    area(0.22 * x, 0.16 * np.sqrt(1 - x**2), LAYER_COLOURS["dermis"])
+    side = 0.175 + (0.02 * (1 - np.cos(4.5 * np.pi * x)) if "stroke" in kind else 0.09 * x**2)
+    reach = 0.22 if "stroke" in kind else 0.1
+    area(reach * np.r_[-1, x, 1], np.r_[0.28, side, 0.28], PALE)
+    ends = ((-0.07, 0.32), (0.1, 0.32)) if "stroke" in kind else ((0.17, 0.32), (0.17, 0.19))
+    arrow = {"arrowstyle": "->,head_length=1.6,head_width=1.1", "shrinkA": 0, "shrinkB": 0}
+    fig.add_artist(FancyArrowPatch(*ends, color=INK, **arrow, **own | {"lw": 0.8}))
+    if "receptor" in kind:
+        fig.add_artist(Circle((0, 0.1), 0.022, fc=INK, ec="white", **own))
 
 
 def leave_room(fig: Figure, above: float = 0.0, beside: float = 0.0) -> None:
@@ -358,7 +433,7 @@ def label_ends(
     ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str
 ) -> None:
     """Label the trace of each surface directly at `x_label` (data units), joined to its end by a
-    hairline.
+    dotted grey hairline, which is no part of the trace.
 
     `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set
     already.
@@ -369,9 +444,9 @@ def label_ends(
     positions = spread(heights, gap, low + gap * 0.4, high - gap * 1.6)
     small = {"va": "center", "fontsize": 6.5}
     for (label, (x, y)), position in zip(ends.items(), positions, strict=True):
-        look = look_of("curvature (1/m)", label, "color")
-        ax.plot([x, x_label], [y, position], lw=0.7, clip_on=False, **look)
-        ax.text(x_label, position, f" {'flat plate' if label == 'flat' else label}", **small)
+        ax.plot([x, x_label], [y, position], color=GREY, lw=0.5, ls=(0, (1, 2)), clip_on=False)
+        ax.plot(x_label, position, "s", ms=2.5, clip_on=False, color=COLOURS.get(label, INK))
+        ax.text(x_label, position, f"  {'flat plate' if label == 'flat' else label}", **small)
     ax.text(x_label, positions.max() + gap * 1.1, heading, **small)
 
 
@@ -404,9 +479,10 @@ def header_legend(
     """Legend in one row under the title, for which it keeps `room` (inch); the lines of a tuple
     stand side by side as one entry.
     """
+    _, foot, _, high = fig.get_layout_engine().get()["rect"]
     leave_room(fig, above=room)
     labels = [(each[0] if isinstance(each, tuple) else each).get_label() for each in entries]
-    place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.22 / fig.get_figheight())}
+    place = {"loc": "upper left", "bbox_to_anchor": (0.012, foot + high)}
     look = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0, "ncols": len(labels)}
     look["handler_map"] = {tuple: HandlerTuple(None, pad=0.0)}
     fig.legend(entries, labels, **place | look | options)

@@ -46,13 +46,13 @@ class SkinSample:
         groups out ask for it again.
         """
         if r not in self._weighted:
-            self._weighted[r] = SpatialSum(r, 0.0, 1.0).weighted_pressure(
+            self._weighted[r] = SpatialSum(r).weighted_pressure(
                 self.x, self.pressure, self.reference
             )
         return self._weighted[r]
 
     def by(self, law: SpatialSum, shift: np.ndarray | float = 0.0) -> np.ndarray:
-        """Strain energy (time) Pa by Eq 4-4, of a receptor that is a shift (m) to the side."""
+        """Strain energy (time) Pa by a law, of a receptor that is a shift (m) to the side."""
         return law.strain_energy(self.x, self.pressure, self.indentation, shift)
 
 
@@ -64,17 +64,23 @@ def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
     return lstsq(terms / scale, data)[0] / scale
 
 
+EQ_4_4, PRESSURE_ONLY, SQUARE = ("constant", "per_depth"), ("constant",), ("square",)
+"""Constants of `SpatialSum` that a law has: the thesis's; those of a device that does not know the
+depth; of the square of the sum alone.
+"""
+
+
 def spatial_sum(
     samples: Sequence[SkinSample],
-    with_depth: bool = True,
+    constants: Sequence[str] = EQ_4_4,
     bounds: tuple[float, float] = (2e-5, 2e-2),
 ) -> SpatialSum:
-    """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at
-    every r.
+    """The law of pressure closest to the strain energies of several histories: r by search, the
+    constants exactly at every r.
 
     Parameters
     ----------
-    with_depth : False leaves out A1, for a device that knows the pressure only.
+    constants : such as `EQ_4_4`, `PRESSURE_ONLY` or `SQUARE`; the others are 0.
     bounds : m, of r.
     """
     data, depth = (
@@ -84,7 +90,8 @@ def spatial_sum(
 
     def at(log_r: float) -> tuple[np.ndarray, np.ndarray]:
         weighted = np.concatenate([sample.weighted(float(np.exp(log_r))) for sample in samples])
-        terms = np.column_stack([weighted * depth, weighted] if with_depth else [weighted])
+        laws = (SpatialSum(1.0, **{name: 1.0}) for name in constants)
+        terms = np.column_stack([law.of_sum(weighted, depth) for law in laws])
         return terms, linear(terms, data)
 
     def misfit(log_r: float) -> float:
@@ -92,8 +99,8 @@ def spatial_sum(
         return float(((data - terms @ constants) ** 2).sum())
 
     log_r = _least(misfit, np.linspace(*np.log(bounds), 15), 1e-5)
-    *per_depth, constant = at(log_r)[1].tolist()
-    return SpatialSum(float(np.exp(log_r)), per_depth[0] if with_depth else 0.0, constant)
+    found = dict(zip(constants, at(log_r)[1].tolist(), strict=True))
+    return SpatialSum(float(np.exp(log_r)), **found)
 
 
 def constant_shift(

@@ -58,7 +58,7 @@ class TactileSensor:
         pressure : (n,) Pa.
         indentation : m, for a law that asks for it.
         """
-        energy = self.weights @ pressure * (self.law.per_depth * indentation + self.law.constant)
+        energy = self.law.of_sum(self.weights @ pressure, indentation)
         change = 0.0 if self._time is None else (energy - self._energy) / (time - self._time)
         self._time, self._energy = time, energy
         return self.rate(energy, change)
@@ -73,10 +73,7 @@ class TactileSensor:
         indentation : (frames,) m.
         """
         pressure = np.asarray(pressure, float)
-        scale = np.broadcast_to(
-            self.law.per_depth * np.asarray(indentation, float) + self.law.constant, len(pressure)
-        )
-        energy = (self.weights @ pressure.T * scale).T
+        energy = self.law.of_sum(self.weights @ pressure.T, np.asarray(indentation, float)).T
         change = np.zeros_like(energy)
         change[1:] = (np.diff(energy, axis=0).T / np.diff(np.asarray(time, float))).T
         return self.rate(energy, change)

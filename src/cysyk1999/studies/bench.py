@@ -23,14 +23,15 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.common.documents import FLAT, RAMP, SCENES, cylinder, force, scene_of
 from cysyk1999.studies.common.plans import seconds, seconds_of_children
+from fingerpad.healing import simulate
 from fingerpad.mechanics.linear_solver import condensation
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.results import provenance, states_found
 from fingerpad.scenes.scene import Scene, load_scene
-from fingerpad.simulation import Simulation, simulate
+from fingerpad.simulation import Simulation
 from fingerpad.sweeps.engine import lay_out
 from fingerpad.sweeps.language import load_sweep
 from fingerpad.sweeps.records import read_records

@@ -33,7 +33,8 @@ from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import SED, TIME
 from cysyk1999.measures.runs import NINE
 from cysyk1999.publishing import style
-from cysyk1999.publishing.write import publish, without_round_off
+from cysyk1999.publishing.tables import without_round_off
+from cysyk1999.publishing.write import publish
 from fingerpad.measures.features import SIMULATED, SURFACES, Histories, energy, ramp_end, scene_name
 
 MEANINGS = {
@@ -93,7 +94,7 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the
     hold for every surface.
     """
-    errors = axs.footnote(frame)[0].replace("; strain energy on instantaneous moduli", "")
+    errors = axs.footnote(frame)[0].replace(f"; strain energy{axs.FORMULA}", "")
     note = (
         f"{errors} Recorded rates fall in the hold under every surface (Cysyk 1999, section 4.2). "
         "Hatched: where a definition does so. Without viscosity the five are one."

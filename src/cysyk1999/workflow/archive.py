@@ -22,7 +22,7 @@ from rocrate.rocrate import ROCrate
 from cysyk1999.config import read_config
 from cysyk1999.job import Job
 from cysyk1999.project import COMPANIONS, Project
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from fingerpad.documents import SceneError, read_yaml
 
 CODE = (

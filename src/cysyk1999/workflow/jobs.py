@@ -14,14 +14,14 @@ from cysyk1999.measures.table import measure
 from cysyk1999.project import COMPANIONS, TABLES, Project
 from cysyk1999.publishing.html import report_pages
 from cysyk1999.workflow.draw import draw_figures
-from cysyk1999.workflow.simulate import mesh_quality, simulate, simulate_fields, summarise
+from cysyk1999.workflow.simulate import simulate, simulate_fields
+from cysyk1999.workflow.summarise import mesh_quality, summarise
 from cysyk1999.workflow.tabulate import catalogue, tables
 from fingerpad.scenes.families import moves_along
 
 if TYPE_CHECKING:
     from cysyk1999.figures.grammar import Figure
 
-REFERENCE = "config/reference/thesis_numbers.csv"
 FOR_PEOPLE = ("picture", "pictures", "table", "tables", "gifs")
 """Keys of outputs that the report shows."""
 MODULES = {spec.number: module for module, specs in CHAPTERS.items() for spec in specs}
@@ -62,19 +62,20 @@ def figures(project: Project) -> Iterator[Job]:
     batch_of = {name: batch for batch, names in project.batches().items() for name in names}
     groups: dict[tuple, list[Figure]] = {}
     for figure in project.drawn:
-        batches = frozenset(batch_of[scene] for scene in figure.needs)
+        batches = frozenset(batch_of[s] for s in figure.judged_by if s in batch_of)
         groups.setdefault((figure.number.partition("-")[0], batches), []).append(figure)
-    reference = project.at(REFERENCE)
     for group in groups.values():
-        needs = dict.fromkeys(scene for figure in group for scene in figure.needs)
+        needs = dict.fromkeys(s for figure in group for s in figure.judged_by if s in batch_of)
         compared = dict.fromkeys(scene for figure in group for scene in figure.read_companions)
-        folder = Path(reference).parent
+        shown = {scene for figure in group for scene in figure.needs}
+        compared |= dict.fromkeys(s for s in needs if s in project.coarse and s not in shown)
+        folder = Path(project.reference[0]).parent
         measured = {str(path) for figure in group for path in figure.measured_files(folder)}
         modules = tuple(dict.fromkeys(MODULES[figure.number] for figure in group))
         yield Job(
             draw_figures,
             {
-                "reference": [reference],
+                "reference": project.reference,
                 "histories": project.histories(needs),
                 "meshes": project.meshes(needs),
                 "coarse": project.both_companions(compared),
@@ -96,6 +97,7 @@ def figure_catalogue(project: Project) -> Iterator[Job]:
         read = {
             "catalogue": [project.at("config/reference/figures.csv")],
             "judged": project.tables(TABLES[:1]),
+            "reference": project.reference,
         }
         values = {"titles": [json.dumps(titles, ensure_ascii=False)]}
         yield Job(catalogue, read, {"readme": ["figures/README.md"]}, values)
@@ -137,7 +139,7 @@ def all_tables(project: Project) -> Iterator[Job]:
         }
         measures = {"measures": [project.result("measures.csv")]}
         yield Job(measure, read, measures, name="measures", mem_mb=2000, priority=1)
-        read = measures | {"reference": [project.at(REFERENCE)]}
+        read = measures | {"reference": project.reference}
         yield Job(tables, read, {"tables": project.tables(names)}, also=chapter_pages(project))
     if "mesh_quality" in c.table_names:
         made = {"table": project.tables(["mesh_quality"])}

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cysyk1999.config import workflow_json_schema
 from cysyk1999.studies.reconstruction.unknowns import unknowns_json_schema
+from cysyk1999.studies.spheres.domes import sizes_json_schema
 from fingerpad.scenes.scene import scene_json_schema, specimen_json_schema
 from fingerpad.sweeps.language import sweep_json_schema
 
@@ -25,6 +26,7 @@ def schemas() -> dict[str, dict]:
         "specimen": specimen_json_schema(),
         "sweep": sweep_json_schema(),
         "reconstruction": dialect | unknowns_json_schema(),
+        "spheres": dialect | sizes_json_schema(),
     }
 
 

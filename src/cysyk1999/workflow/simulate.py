@@ -7,16 +7,12 @@ from itertools import groupby
 from pathlib import Path
 from types import SimpleNamespace
 
-import pandas as pd
-
-from cysyk1999.measures.inputs import read_results
-from cysyk1999.publishing.write import publish_table
-from fingerpad import load_scene, plan, simulation
+from fingerpad import healing
 from fingerpad.files import write_atomically, write_text
-from fingerpad.planning.plan import companion
+from fingerpad.planning.plan import companion, plan
 from fingerpad.results import FIELDS, summary, write_history
+from fingerpad.scenes.scene import load_scene
 from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
-from fingerpad.specimen.quality import quality_table
 
 
 def simulate(job: SimpleNamespace) -> None:
@@ -43,7 +39,7 @@ def simulate(job: SimpleNamespace) -> None:
             else:
                 write_atomically(file, lambda p, content=content: p.write_bytes(content))
             if how.outputs not in solved:
-                solved[how.outputs] = simulation.simulate(scene, how, mesh=mesh)
+                solved[how.outputs] = healing.simulate(scene, how, mesh=mesh)
             result = solved[how.outputs]
             write_text(file.with_name("summary.json"), json.dumps(summary(result), indent=2) + "\n")
             write_history(result, history)
@@ -54,22 +50,7 @@ def simulate_fields(job: SimpleNamespace) -> None:
     """`scenes` -> `histories` with the whole field of strain energy at the snapshots of each."""
     for path, history in zip(job.scenes, job.histories, strict=True):
         scene = load_scene(path)
-        result = simulation.simulate(scene, fields=bool(scene.outputs.snapshots))
+        result = healing.simulate(scene, fields=bool(scene.outputs.snapshots))
         others = [f"snapshot_{name}" for name in FIELDS if name != "strain_energy_density"]
         write_history(result.drop_vars(others, errors="ignore"), history)
         print(history, result.attrs["cost"], flush=True)
-
-
-def summarise(job: SimpleNamespace) -> None:
-    """`summaries` (summary.json of each scene) -> `table` with a row for each scene and leg."""
-    rows = []
-    for path in map(Path, job.summaries):
-        for number, leg in enumerate(json.loads(path.read_text(encoding="utf-8"))["legs"], start=1):
-            plain = {k: value for k, value in leg.items() if not isinstance(value, (list, dict))}
-            rows.append({"scene": path.parent.name, "leg": number} | plain)
-    publish_table(pd.DataFrame(rows), job.table[0])
-
-
-def mesh_quality(job: SimpleNamespace) -> None:
-    """`meshes` -> `table`."""
-    publish_table(quality_table(read_results(job.meshes)[1]), job.table[0])

@@ -8,12 +8,12 @@ from types import SimpleNamespace
 
 import pandas as pd
 
-from cysyk1999.claims.comparison import holding
 from cysyk1999.claims.pages import pages
+from cysyk1999.claims.said import figure_verdicts
 from cysyk1999.claims.tables import TABLES
 from cysyk1999.figures.catalogue import read_catalogue, readme
 from cysyk1999.measures.table import Instead, Measures, read_measures
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.reference_data import read_reference
 from fingerpad.files import write_text
 
@@ -31,6 +31,9 @@ def tables(job: SimpleNamespace) -> None:
 
 
 def catalogue(job: SimpleNamespace) -> None:
-    """`catalogue` and `judged` (CSV: the comparison), `titles` (JSON, by number) -> `readme`."""
-    verdicts, figures = holding(pd.read_csv(job.judged[0])), read_catalogue(job.catalogue[0])
+    """`catalogue`, `judged` (CSV: the comparison) and `reference`, `titles` (JSON, by number) ->
+    `readme`.
+    """
+    reference, figures = read_reference(job.reference[0]), read_catalogue(job.catalogue[0])
+    verdicts = figure_verdicts(pd.read_csv(job.judged[0]), reference)
     write_text(job.readme[0], readme(figures, json.loads(job.titles[0]), verdicts))

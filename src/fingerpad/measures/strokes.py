@@ -227,6 +227,17 @@ def passing(stroke: xr.Dataset, convexity: Segment) -> np.ndarray:
     return (under >= before) & (under <= after)
 
 
+def passages(stroke: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Stretches of stroke distance (m) in which the centre node is in the `passage` of each
+    convexity that it comes to, by the convexity's label; beside a flat as far again as half of the
+    convexity.
+    """
+    under, d = np.maximum.accumulate(place(stroke)), distance(stroke)
+    ends = {label: passage(stroke, arc, 0.5) for label, arc in convexities(stroke).items()}
+    reached = {label: np.interp(pair, under, d) for label, pair in ends.items()}
+    return {label: (float(a), float(b)) for label, (a, b) in reached.items() if b > a}
+
+
 def peaks(stroke: xr.Dataset, trace: Trace) -> dict[str, float]:
     """Largest value of a trace while each convexity passes, by the convexity's label."""
     values = trace(stroke)

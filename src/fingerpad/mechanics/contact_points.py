@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fingerpad.mechanics.elements import edge_values
+from fingerpad.mechanics.kinematics import PLANE_STRAIN, Kinematics
 
 SMOOTHING = 0.01
 """A tenth leaves half of nodal contact's kinks and more alternation; ten times as much widens
@@ -31,10 +32,14 @@ _SHARP = 0.1
 give way.
 """
 PER_NODE = 2
+_QUARTERS = (-0.75, -0.25, 0.25, 0.75)
 _RULES = {
-    1: ((-0.5, 0.5), (1.0, 1.0)),
-    2: ((-0.75, -0.25, 0.25, 0.75), (13 / 24, 11 / 24, 11 / 24, 13 / 24)),
+    1: ((-0.5, 0.5), (1.0, 1.0), (-2 / 3, 2 / 3)),
+    2: (_QUARTERS, (13 / 24, 11 / 24, 11 / 24, 13 / 24), _QUARTERS),
 }
+"""Points of an edge, their weights, and where the radius of a body of revolution is taken for each,
+so that a uniform pressure there is no load on its nodes but its own.
+"""
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,13 @@ class ContactPoints:
     softness
         (n,) m^3/Pa.
     mirrored
-        Does the skin begin at a symmetry axis?.
+        Does the skin begin at a symmetry axis?
+    radial
+        (n, k) shape functions where the radius is taken.
+    across
+        (n,) m of what lies across the section, of the unloaded skin; ones in plane strain.
+    kinematics
+        What the section stands for.
     """
 
     nodes: np.ndarray
@@ -73,6 +84,9 @@ class ContactPoints:
     per_edge: int
     softness: np.ndarray
     mirrored: bool
+    radial: np.ndarray
+    across: np.ndarray
+    kinematics: Kinematics
 
     @classmethod
     def on(
@@ -83,6 +97,7 @@ class ContactPoints:
         shear: np.ndarray,
         mirrored=False,
         convexity=0.0,
+        kinematics: Kinematics = PLANE_STRAIN,
     ) -> ContactPoints:
         """Those of the skin.
 
@@ -106,7 +121,9 @@ class ContactPoints:
         along = place[edges]
         first = np.argsort(along[:, 0])
         along, edges, shear = along[first], edges[first], shear[first]
-        s, weight = (np.array(each) for each in _RULES[order])
+        s, weight, at_radius = (np.array(each) for each in _RULES[order])
+        radial = np.tile(edge_values(order, at_radius)[0], (len(edges), 1))
+        x = np.einsum("qa,qa->q", radial, points[np.repeat(edges, len(s), axis=0), 0])
         values, slopes = edge_values(order, s)
         nearest = np.argmax(values, axis=1)
         count = len(edges)
@@ -124,6 +141,9 @@ class ContactPoints:
             len(s),
             smoothing * (4 * spacing) ** 3 / (3 * np.repeat(shear, len(s))),
             mirrored,
+            radial,
+            np.broadcast_to(kinematics.measure(x), len(x)),
+            kinematics,
         )
 
     def __len__(self) -> int:
@@ -149,23 +169,28 @@ class ContactPoints:
 
     def soft(self, part: slice, odd: bool = False) -> np.ndarray:
         """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite. odd:
-        of those along the skin, which change their sign at a symmetry axis.
+        of those along the skin, which change their sign at a symmetry axis. (m/N of a ring.)
         """
-        length = self.weight[part] * self.per_edge / 2 * self.spacing[part]  # of the unloaded skin
+        across = self.across[part]
+        # of the unloaded skin
+        length = self.weight[part] * self.per_edge / 2 * self.spacing[part] * across
         way = (self.spacing[part][1:] + self.spacing[part][:-1]) / 2
         soft = (self.softness[part][1:] + self.softness[part][:-1]) / 2 / way
+        soft = soft * ((across[1:] + across[:-1]) / 2)
         out = np.diag(np.append(soft, 0.0) + np.append(0.0, soft))
         if odd and self.mirrored and part.start == 0:
-            out[0, 0] += 2 * self.softness[0] / self.spacing[0]
+            out[0, 0] += 2 * self.softness[0] / self.spacing[0] * across[0]
         i = np.arange(len(soft))
         out[i, i + 1] = out[i + 1, i] = -soft
         return out / length / length[:, None]
 
     def lengths(self, position: np.ndarray) -> np.ndarray:
-        """(n,) m of the skin that belong to each point, nodes being at ``position`` (all nodes, 2)
-        m.
+        """(n,) m of the skin (m^2 of a body of revolution) that belong to each point, nodes being
+        at ``position`` (all nodes, 2) m.
         """
-        return np.hypot(*np.einsum("qa,qai->iq", self.slopes, position[self.nodes])) * self.weight
+        way = np.hypot(*np.einsum("qa,qai->iq", self.slopes, position[self.nodes])) * self.weight
+        x = np.einsum("qa,qa->q", self.radial, position[self.nodes, 0])
+        return way * self.kinematics.measure(x)
 
     def of_nodes(self, values: np.ndarray, part: slice = slice(None)) -> np.ndarray:
         """Sums (ns, ...) of what is at some points (k, ...), by the skin's nodes."""

@@ -19,6 +19,7 @@ import numpy as np
 
 from fingerpad.laws import NEO_HOOKE, Assigned
 from fingerpad.mechanics import kernels
+from fingerpad.mechanics.kinematics import Kinematics
 from fingerpad.mechanics.space import TOGETHER, Space
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.materials import Prony
@@ -70,9 +71,10 @@ class FiniteStrainBody:
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
+        require_of_one_invariant(self.laws, space.kinematics)
         self._loops = [
             (
-                kernels.loops(part.law, *space.sizes),
+                kernels.loops(part.law, space.kinematics, *space.sizes),
                 np.ascontiguousarray(part.constants.T),
                 space.blocks(part.elements),
             )
@@ -121,7 +123,7 @@ class FiniteStrainBody:
         )
 
     def internal_force(self) -> np.ndarray:
-        """(n, 2) N/m at the current displacement and dilatation."""
+        """(n, 2) N/m (N of a body of revolution) at the current displacement and dilatation."""
         force = np.zeros_like(self.u)
         self._run("internal_force", force)
         if not self.lagged:
@@ -246,57 +248,64 @@ def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
     return (Assigned(NEO_HOOKE, np.zeros((count, 0)), np.ones(count, bool)),)
 
 
-def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.ndarray:
+def require_of_one_invariant(laws: tuple[Assigned, ...], kinematics: Kinematics) -> None:
+    """ValueError for a law that is more than a function of J^(-2/3) I1, whose formulas are those of
+    plane strain alone, in a body of revolution.
+    """
+    for law in {part.law for part in laws if kinematics.round}:
+        constants = np.array([each.default for each in law.constants.values()])
+        if abs(law.stress(3.3, 1.1, 1.0, constants)[1] - 3.3) > 1e-9:
+            raise ValueError(f"law {law.name}: is one of plane strain, not of a body of revolution")
+
+
+def isochoric_stress(laws: tuple[Assigned, ...], f, hoop, shear) -> np.ndarray:
     """Isochoric second Piola-Kirchhoff stress (np, 4) at points: 11, 22, 12, 33, Pa.
 
     Parameters
     ----------
     laws
         At the points.
-    u
-        (n, 2) m.
-    cells
-        (np, nen).
-    grad
-        (np, nen, 2) 1/m.
+    f, hoop
+        (np, 2, 2) and (np,) deformation gradient in the section and across it.
     shear
         (np,) long-term moduli, Pa.
     """
-    f = np.eye(2) + np.einsum("pai,paj->pij", u[cells], grad)
     c = f.swapaxes(-1, -2) @ f
-    i1, jac = _invariants(f)
+    i1, jac = _invariants(f, hoop)
     out = np.empty((len(f), 4))
     for part in laws:
-        here = part.elements
+        here, flat = part.elements, jac[part.elements] / hoop[part.elements]
         mod, t = part.law.stress(i1[here], jac[here], shear[here], part.constants[here].T)
-        cofactor = np.stack([c[here, 1, 1], c[here, 0, 0], -c[here, 0, 1], jac[here] ** 2], axis=1)
-        share = t / (3 * jac[here] ** 2)
+        cofactor = np.stack(
+            [c[here, 1, 1], c[here, 0, 0], -c[here, 0, 1], (flat / hoop[here]) ** 2], axis=1
+        )
+        share = t / (3 * flat**2)
         out[here] = mod[:, None] * ([1, 1, 0, 1] - share[:, None] * cofactor)
     return out
 
 
-def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarray) -> np.ndarray:
-    """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,)
-    or (ne, 1), Pa.
+def isochoric_energy(laws: tuple[Assigned, ...], f, hoop, shear: np.ndarray) -> np.ndarray:
+    """Energy density (np,), Pa, at deformation gradients (np, 2, 2) in the section and (np,) across
+    it; shear: (np,) Pa.
     """
-    i1, jac = _invariants(f)
+    i1, jac = _invariants(f, hoop)
     out = np.zeros(i1.shape)
     for part in laws:
         here = part.elements
-        constants = part.constants[here].T.reshape(len(part.law.constants), *shear[here].shape)
+        constants = part.constants[here].T
         out[here] = part.law.energy(i1[here], jac[here], shear[here], constants)
     return out
 
 
-def _invariants(f):
-    """I1 and J (...) of deformation gradients (..., 2, 2) in plane strain."""
-    jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
-    return np.sum(f * f, axis=(-2, -1)) + 1, jac
+def _invariants(f, hoop):
+    """I1 and J (...) of deformation gradients (..., 2, 2) in the section and (...) across it."""
+    flat = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
+    return np.sum(f * f, axis=(-2, -1)) + hoop**2, flat * hoop
 
 
-def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12, 33)
-    in plane strain.
+def push_forward(f: np.ndarray, hoop, s: np.ndarray) -> np.ndarray:
+    """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12,
+    33).
     """
     f11, f12, f21, f22 = f[..., 0, 0], f[..., 0, 1], f[..., 1, 0], f[..., 1, 1]
     s11, s22, s12, s33 = np.moveaxis(s, -1, 0)
@@ -306,8 +315,9 @@ def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:
         f21 * s11 + f22 * s12,
         f21 * s12 + f22 * s22,
     )
+    across = s33 * hoop**2
     return np.stack(
-        [a11 * f11 + a12 * f12, a21 * f21 + a22 * f22, a11 * f21 + a12 * f22, s33], axis=-1
+        [a11 * f11 + a12 * f12, a21 * f21 + a22 * f22, a11 * f21 + a12 * f22, across], axis=-1
     )
 
 

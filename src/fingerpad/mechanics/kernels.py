@@ -40,7 +40,7 @@ from fingerpad.laws.law import isochoric
 
 _JIT = JIT | {"fastmath": {"contract", "nsz", "reassoc", "arcp"}}
 _HELPER = _JIT | {"cache": False}
-_INLINE = _HELPER | {"inline": "always"}
+INLINE = _HELPER | {"inline": "always"}
 """For what is short or called element by element: the loops are up to three times as fast."""
 
 _LANES = 8
@@ -85,26 +85,10 @@ def _isochoric_factor(jac):
     return factor
 
 
-@register_jitable(**_INLINE)
-def _four(values, q, k):
+@register_jitable(**INLINE)
+def four(values, q, k):
     """Components 11, 12, 21, 22 at a point of an element."""
     return values[0, q, k], values[1, q, k], values[2, q, k], values[3, q, k]
-
-
-@register_jitable(**_INLINE)
-def _spring(f, stress):
-    """tau : tau of the pushed-forward deviatoric stress (11, 22, 12, 33) of a branch."""
-    f11, f12, f21, f22 = f
-    s11, s22, s12, t33 = stress
-    a11 = f11 * s11 + f12 * s12
-    a12 = f11 * s12 + f12 * s22
-    a21 = f21 * s11 + f22 * s12
-    a22 = f21 * s12 + f22 * s22
-    t11 = a11 * f11 + a12 * f12
-    t22 = a21 * f21 + a22 * f22
-    t12 = a11 * f21 + a12 * f22
-    mean = (t11 + t22 + t33) / 3.0
-    return (t11 - mean) ** 2 + (t22 - mean) ** 2 + (t33 - mean) ** 2 + 2.0 * t12 * t12
 
 
 @njit(**_JIT)
@@ -155,7 +139,7 @@ def exchanged(compliance, share, on, stick, out):
             out[touching + c, touching + r] = tangential[points + stick[r]]
 
 
-@njit(**_INLINE)
+@njit(**INLINE)
 def _add_rows(rows, columns, depth, left, right, row, places, n, data):
     """Add the upper triangle of the product left right to ``data``, from its ``n``-th place on.
 
@@ -184,11 +168,11 @@ def _named(function: Callable, *parts) -> Callable:
 
 
 @cache
-def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
-    """The element loops of a law for elements with so many nodes, quadrature points and pressure
-    modes.
+def loops(law: Law, kinematics, nodes: int, points: int, modes: int) -> SimpleNamespace:
+    """The element loops of a law and a :class:`~fingerpad.mechanics.kinematics.Kinematics` for
+    elements with so many nodes, quadrature points and pressure modes.
 
-    The law's formulas are compiled into them: assemble_tangent, internal_force, commit and
+    The formulas of both are compiled into them: assemble_tangent, internal_force, commit and
     energies. In all of them ``mesh`` is
     :attr:`Space.mesh`, ``constants`` (number of constants, ne) are the law's, and ``blocks`` (k, 3)
     says which elements follow it: those of a block, from the first to before the last
@@ -196,16 +180,22 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     """
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
-        register_jitable(**_INLINE)(formula)
+        register_jitable(**INLINE)(formula)
+    deformed, invariant, stressed = kinematics.deformed, kinematics.invariant, kinematics.stressed
+    green, isochoric_stress = kinematics.green, kinematics.isochoric
+    spring, answered, fill_rows = kinematics.spring, kinematics.answered, kinematics.rows
+    columns, parts = kinematics.columns, 3 + kinematics.columns
+    numbers = kinematics.moduli
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
 
     def helper(function):
-        return register_jitable(**_HELPER)(_named(function, nodes, points, modes))
+        return register_jitable(**_HELPER)(_named(function, kinematics.name, nodes, points, modes))
 
     @helper
     def deform(u, mesh, block, first, last, local, drawn, f):
-        """Deformation gradient 11, 12, 21, 22 and its determinant at the points of elements of a
-        block, into ``f`` (5, nq, ...). Returns the smallest determinant.
+        """Deformation gradient 11, 12, 21, 22, its determinant and, in a body of revolution, 33
+        at the points of elements of a block, into ``f`` (5 or 6, nq, ...). Returns the smallest
+        determinant.
         """
         cells, reference, inverses = mesh[0], mesh[1], mesh[2]
         start, inverse = block * np.uint64(f.shape[2]), inverses[block]
@@ -214,7 +204,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                 local[0, a, k] = u[cells[start + k, a], 0]
                 local[1, a, k] = u[cells[start + k, a], 1]
         for i in range(2):
-            for c in range(2 * points):
+            for c in range(columns * points):
                 for k in range(first, last):
                     total = 0.0
                     for a in range(nodes):
@@ -224,14 +214,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for q in range(points):
             low = np.inf
             for k in range(first, last):
-                i11, i12, i21, i22 = _four(inverse, q, k)
-                x1, x2 = drawn[0, q, k], drawn[0, points + q, k]
-                y1, y2 = drawn[1, q, k], drawn[1, points + q, k]
-                f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
-                f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
-                jac = f11 * f22 - f12 * f21
-                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
-                low = min(low, jac)
+                low = min(low, deformed(inverse, drawn, points, q, k, f))
             smallest = min(smallest, low)
         return smallest
 
@@ -255,14 +238,14 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
 
     @helper
     def to_nodes(reference, first, last, drawn, local):
-        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
-        ``local`` (2, nen, ...).
+        """What stresses ``drawn`` (2, 2 or 3 nq, ...) back to the reference cell are worth at its
+        nodes: ``local`` (2, nen, ...).
         """
         for i in range(2):
             for a in range(nodes):
                 for k in range(first, last):
                     total = 0.0
-                    for c in range(2 * points):
+                    for c in range(columns * points):
                         total += drawn[i, c, k] * reference[a, c]
                     local[i, a, k] = total
 
@@ -306,24 +289,29 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         together = weights.shape[2]
         turned = np.ascontiguousarray(reference.T)
         # of every point the stress, cof F and the moduli, all drawn back to the reference cell
-        local, found = np.empty((2, nodes, together)), np.empty((18, points, together))
-        drawn, cofactor, moduli = found[:4].reshape(2, 2 * points, together), found[4:8], found[8:]
-        f, theta = np.empty((5, points, together)), np.empty((modes, together))
+        both = 2 * columns
+        local = np.empty((2, nodes, together))
+        found = np.empty((2 * both + numbers, points, together))
+        drawn = found[:both].reshape(2, columns * points, together)
+        cofactor, moduli = found[both : 2 * both], found[2 * both :]
+        f, theta = np.empty((parts, points, together)), np.empty((modes, together))
         lag, answer, part = (
             np.empty((modes, together)),
             np.empty((6, together)),
-            np.empty((2, 2 * points, together)),
+            np.empty((2, columns * points, together)),
         )
-        modal, own = np.empty((modes, 2, nodes, together)), np.empty((10, points))
-        # K = left^T right: the gradients of the virtual displacements, x and y, and below them
-        # their dilatation modes; and how stresses answer to all degrees of freedom, the second time
-        # only to those along y
-        left = np.empty((2, nodes, 2 * points + modes))
+        modal, own = np.empty((modes, 2, nodes, together)), np.empty((numbers, points))
+        # K = left^T right: the gradients of the virtual displacements, x and y, below them their
+        # dilatation modes, and along x what lies across; and how stresses answer to all degrees of
+        # freedom, the second time only to those along y
+        left = np.empty((2, nodes, columns * points + modes))
         for a in range(nodes):  # by loops: numba takes seconds to compile a broadcast
             for q in range(2 * points):
                 left[0, a, q] = left[1, a, q] = reference[a, q]
+            for q in range(2 * points, columns * points):
+                left[0, a, modes + q] = reference[a, q]
         right_x, right_y = (
-            np.zeros((2 * points + modes, wide_x)),
+            np.zeros((columns * points + modes, wide_x)),
             np.zeros((2 * points + modes, wide_y)),
         )
         row = np.empty(wide_x)
@@ -331,22 +319,20 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
+            past = history[block]
             smallest = min(smallest, deform(u, mesh, block, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
             project(mesh, block, first, last, f, volume, dilatation, theta, lag)
             for q in range(points):
                 for k in range(first, last):
-                    e = start + k
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    jac = f[4, q, k]
+                    e, jac = start + k, f[4, q, k]
                     p = plag = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
                         plag += psi[m, q, k] * lag[m, k]
-                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
                     mod, t, fold, alpha, beta = law_tangent(
-                        i1, jac, factor * mu[e], constants[:, e]
+                        invariant(f, q, k), jac, factor * mu[e], constants[:, e]
                     )
                     s = mod * t / (3.0 * jac)
                     p = kappa[e] * p - s
@@ -358,73 +344,25 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     answer[0, k], answer[1, k], answer[2, k] = mod, p, cross
                     answer[3, k], answer[4, k], answer[5, k] = fold, alpha, beta
                 for k in range(first, last):
-                    w = weight[q, k]
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    mod, p, cross = answer[0, k], answer[1, k], answer[2, k]
-                    fold, alpha, beta = answer[3, k], answer[4, k], answer[5, k]
-                    l11, l22 = mod + history[block, 0, q, k], mod + history[block, 1, q, k]
-                    l12 = history[block, 2, q, k]
-                    i11, i12, i21, i22 = _four(inverse, q, k)
-                    # rows of F, its cofactor and (m I + H) J^-T on the reference cell
-                    fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
-                    fy1, fy2 = f21 * i11 + f22 * i21, f21 * i12 + f22 * i22
-                    cx1, cx2 = f22 * i11 - f21 * i21, f22 * i12 - f21 * i22
-                    cy1, cy2 = f11 * i21 - f12 * i11, f11 * i22 - f12 * i12
-                    n11, n12 = w * (l11 * i11 + l12 * i21), w * (l11 * i12 + l12 * i22)
-                    n21, n22 = w * (l12 * i11 + l22 * i21), w * (l12 * i12 + l22 * i22)
-                    found[0, q, k] = f11 * n11 + f12 * n21 + w * p * cx1
-                    found[1, q, k] = f11 * n12 + f12 * n22 + w * p * cx2
-                    found[2, q, k] = f21 * n11 + f22 * n21 + w * p * cy1
-                    found[3, q, k] = f21 * n12 + f22 * n22 + w * p * cy2
-                    found[4, q, k], found[5, q, k] = w * cx1, w * cx2
-                    found[6, q, k], found[7, q, k] = w * cy1, w * cy2
-                    fold *= w
-                    alpha *= w
-                    beta *= w
-                    cross *= w * (i11 * i22 - i12 * i21)
-                    ax1, ax2 = alpha * cx1 + fold * fx1, alpha * cx2 + fold * fx2
-                    ay1, ay2 = alpha * cy1 + fold * fy1, alpha * cy2 + fold * fy2
-                    bx1, bx2 = alpha * fx1 + beta * cx1, alpha * fx2 + beta * cx2
-                    by1, by2 = alpha * fy1 + beta * cy1, alpha * fy2 + beta * cy2
-                    lap11, lap12, lap22 = (
-                        i11 * n11 + i21 * n21,
-                        i11 * n12 + i21 * n22,
-                        i12 * n12 + i22 * n22,
-                    )
-                    found[8, q, k] = lap11 + fx1 * ax1 + cx1 * bx1
-                    found[9, q, k] = lap12 + fx1 * ax2 + cx1 * bx2
-                    found[10, q, k] = lap22 + fx2 * ax2 + cx2 * bx2
-                    found[11, q, k] = fx1 * ay1 + cx1 * by1
-                    found[12, q, k] = fx1 * ay2 + cx1 * by2 + cross
-                    found[13, q, k] = fx2 * ay1 + cx2 * by1 - cross
-                    found[14, q, k] = fx2 * ay2 + cx2 * by2
-                    found[15, q, k] = lap11 + fy1 * ay1 + cy1 * by1
-                    found[16, q, k] = lap12 + fy1 * ay2 + cy1 * by2
-                    found[17, q, k] = lap22 + fy2 * ay2 + cy2 * by2
+                    answered(f, inverse, weight[q, k], past, answer, q, k, found)
             to_nodes(reference, first, last, drawn, local)
             add(cells, start, first, last, local, force)
             for m in range(modes):
-                for q in range(points):
-                    for k in range(first, last):
-                        part[0, q, k] = psi[m, q, k] * cofactor[0, q, k]
-                        part[0, points + q, k] = psi[m, q, k] * cofactor[1, q, k]
-                        part[1, q, k] = psi[m, q, k] * cofactor[2, q, k]
-                        part[1, points + q, k] = psi[m, q, k] * cofactor[3, q, k]
+                for i in range(2):
+                    for c in range(columns):
+                        for q in range(points):
+                            for k in range(first, last):
+                                part[i, c * points + q, k] = (
+                                    psi[m, q, k] * cofactor[i * columns + c, q, k]
+                                )
                 to_nodes(reference, first, last, part, modal[m])
             for k in range(first, last):
                 e = start + k
-                for d in range(10):
+                for d in range(numbers):
                     for q in range(points):
                         own[d, q] = moduli[d, q, k]
                 for q in range(points):
-                    for b in range(cells.shape[1]):
-                        d1, d2 = turned[q, b], turned[points + q, b]
-                        right_x[q, b] = own[0, q] * d1 + own[1, q] * d2
-                        right_x[points + q, b] = own[1, q] * d1 + own[2, q] * d2
-                        right_x[q, nodes + b] = own[3, q] * d1 + own[4, q] * d2
-                        right_x[points + q, nodes + b] = own[5, q] * d1 + own[6, q] * d2
-                        right_y[q, b] = own[7, q] * d1 + own[8, q] * d2
-                        right_y[points + q, b] = own[8, q] * d1 + own[9, q] * d2
+                    fill_rows(own, turned, q, points, modes, right_x, right_y)
                 for m in range(modes):
                     for a in range(nodes):
                         x, y = modal[m, 0, a, k], modal[m, 1, a, k]
@@ -435,7 +373,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         right_y[2 * points + m, a] = kappa[e] * y
                         rates[e, m, 0, a], rates[e, m, 1, a] = x, y
                 rows, depth, places = cells.shape[1], 2 * points + modes, scatter[e]
-                n = _add_rows(rows, 2 * nodes, depth, left[0], right_x, row, places, 0, data)
+                deep = columns * points + modes
+                n = _add_rows(rows, 2 * nodes, deep, left[0], right_x, row, places, 0, data)
                 _add_rows(rows, nodes, depth, left[1], right_y, row, places, n, data)
         return smallest
 
@@ -450,37 +389,27 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
-        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, theta = np.empty((5, points, together)), np.empty((modes, together))
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, columns * points, together))
+        f, theta = np.empty((parts, points, together)), np.empty((modes, together))
         smallest = np.inf
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
+            past = history[block]
             smallest = min(smallest, deform(u, mesh, block, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
             project(mesh, block, first, last, f, volume, dilatation, theta, theta)
             for q in range(points):
                 for k in range(first, last):
-                    e = start + k
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    jac = f[4, q, k]
+                    e, jac = start + k, f[4, q, k]
                     p = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
-                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
+                    i1 = invariant(f, q, k)
                     mod, t = law_stress(i1, jac, factor * mu[e], constants[:, e])
                     p = kappa[e] * p - mod * t / (3.0 * jac) + pointwise[e] * (jac - 1.0)
-                    l11, l22 = mod + history[block, 0, q, k], mod + history[block, 1, q, k]
-                    l12 = history[block, 2, q, k]
-                    p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
-                    p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
-                    w = weight[q, k]
-                    i11, i12, i21, i22 = _four(inverse, q, k)
-                    drawn[0, q, k] = w * (p11 * i11 + p12 * i21)
-                    drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
-                    drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
-                    drawn[1, points + q, k] = w * (p21 * i12 + p22 * i22)
+                    stressed(f, inverse, weight[q, k], past, mod, p, q, k, points, drawn)
             to_nodes(reference, first, last, drawn, local)
             add(cells, start, first, last, local, force)
         return smallest
@@ -508,24 +437,17 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         """
         weights = mesh[3]
         together = weights.shape[2]
-        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, now = np.empty((5, points, together)), np.empty((8, together))
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, columns * points, together))
+        f, now = np.empty((parts, points, together)), np.empty((8, together))
         work = 0.0
         for block, first, last in blocks:
             start, weight = block * np.uint64(together), weights[block]
             deform(u, mesh, block, first, last, local, drawn, f)
             for q in range(points):
                 for k in range(first, last):
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    jac = f[4, q, k]
-                    c11, c22 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22
-                    c12 = f11 * f12 + f21 * f22
-                    i1 = c11 + c22 + 1.0
-                    mod, t = law_stress(i1, jac, mu[start + k], constants[:, start + k])
-                    s = t / (3.0 * jac * jac)
-                    now[0, k], now[1, k] = mod * (1.0 - s * c22), mod * (1.0 - s * c11)
-                    now[2, k], now[3, k] = mod * s * c12, mod * ((1.0 - t / 3.0) + (t - i1))
-                    now[4, k], now[5, k], now[6, k], now[7, k] = c11, c22, c12, 1.0
+                    e, i1 = start + k, green(f, q, k, now)
+                    mod, t = law_stress(i1, f[4, q, k], mu[e], constants[:, e])
+                    isochoric_stress(f, q, k, i1, mod, t, now)
                 for c in range(4):
                     # the mean of a branch's stress before and after, times the way: 12 counts
                     # twice, and C is twice E
@@ -553,24 +475,21 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         """
         weights = mesh[3]
         together = weights.shape[2]
-        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f = np.empty((5, points, together))
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, columns * points, together))
+        f = np.empty((parts, points, together))
         network = springs = 0.0
         for block, first, last in blocks:
             start, weight = block * np.uint64(together), weights[block]
             deform(u, mesh, block, first, last, local, drawn, f)
             for q in range(points):
                 for k in range(first, last):
-                    e = start + k
-                    f11, f12, f21, f22 = _four(f, q, k)
-                    jac = f[4, q, k]
-                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
-                    w = weight[q, k]
+                    e, jac, w = start + k, f[4, q, k], weight[q, k]
+                    i1 = invariant(f, q, k)
                     network += w * law_energy(i1, jac, mu[e], constants[:, e])
                     network += 0.5 * w * pointwise[e] * (jac - 1.0) ** 2
                 for b in range(len(beta)):
                     for k in range(first, last):
-                        square = _spring(_four(f, q, k), _four(branches[b, block], q, k))
+                        square = spring(f, q, k, branches[b, block])
                         springs += weight[q, k] * square / (4.0 * beta[b] * mu[start + k])
         return network, springs
 
@@ -579,5 +498,6 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     # again. A law from outside is not kept: what its functions call is not in the name.
     kept = _JIT["cache"] and law.stress.__module__.startswith("fingerpad.")
     compiled = njit(**_JIT | {"cache": kept})
-    sizes = law.name, law.source[:16], nodes, points, modes
+    of_formulas = law.name, law.source[:16], kinematics.name, kinematics.source[:16]
+    sizes = *of_formulas, nodes, points, modes
     return SimpleNamespace(**{loop.__name__: compiled(_named(loop, *sizes)) for loop in every})

@@ -85,6 +85,7 @@ def _mkl() -> ctypes.CDLL | None:
     libraries = sorted(Path(sys.prefix, "lib").glob("libmkl_rt.so*"))
     if not libraries:
         return None
+    os.environ.setdefault("MKL_THREADING_LAYER", "GNU")  # of libgomp, which gmsh needs anyway
     library = ctypes.CDLL(str(libraries[0]))
     library.MKL_Set_Num_Threads(ctypes.c_int(threads()))
     return library

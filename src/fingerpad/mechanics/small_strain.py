@@ -42,7 +42,8 @@ class SmallStrainBody:
         # with nothing prescribed but nodes that belong to no element
         alone = np.ones_like(space.fixed)
         alone[space.cells] = False
-        everywhere = Space(space.points, space.cells, space.element.kind, alone, space.element.name)
+        mesh, kind = (space.points, space.cells), space.element
+        everywhere = Space(*mesh, kind.kind, alone, kind.name, space.kinematics)
         pick = eye(alone.size, format="csr")[~alone.ravel()]
         self._free, self._rates = self._tangents(space)
         self._deviatoric, self._volumetric = (

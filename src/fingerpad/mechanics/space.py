@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from fingerpad.mechanics.elements import EDGE_POINTS, EDGE_WEIGHTS, ELEMENTS, edge_values
+from fingerpad.mechanics.kinematics import PLANE_STRAIN, Kinematics
 from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.specimen.element_kinds import KINDS
 
@@ -48,25 +49,31 @@ class Space:
         Key of ELEMENTS; None = the default for the kind.
     fixed
         (n, 2) bool, prescribed degrees of freedom.
+    kinematics
+        What the section stands for.
 
     Attributes
     ----------
     points, cells
-        As used (with bubble nodes). weight (ne, nq) m^2; centres (ne, 2) m, means of the elements'
-        nodes; psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation
-        number or -1; size. mesh: what the element loops read, as tuple: cells; gradients on the
+        As used (with bubble nodes). weight (ne, nq) m^2 (m^3 of a body of revolution); centres (ne,
+        2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the
+        weight; equation (n, 2) equation number or -1; size. mesh: what the element loops read, as
+        tuple: cells; gradients on the
         reference cell (nen, 2 nq), all along its first coordinate before all along the second; and,
         in blocks of elements (:func:`blocked`), what makes gradients of them (4, nq), 1/m, with 11,
-        12, 21, 22 of the inverse Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq,
+        12, 21, 22 of the inverse Jacobian; of a body of revolution the shape functions after the
+        gradients, and 1/R after the Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq,
         nm.
 
     Raises
     ------
     ValueError
-        An element is inverted or the element does not fit the mesh.
+        An element is inverted, beyond the axis of revolution, or the element does not fit the mesh.
     """
 
-    def __init__(self, points, cells, kind, fixed, element=None):
+    def __init__(
+        self, points, cells, kind, fixed, element=None, kinematics: Kinematics = PLANE_STRAIN
+    ):
         points, cells = np.asarray(points, float), np.asarray(cells, np.int32)
         fixed = np.asarray(fixed, bool)
         self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
@@ -78,6 +85,7 @@ class Space:
         if cells.shape[1] != self.element.nodes_per_element:
             raise ValueError(f"element {self.element.name} does not fit a mesh of {kind}")
         self.points, self.cells, self.fixed = points, cells, fixed
+        self.kinematics = kinematics
         x = points[cells]
         (a, b), (c, d) = (
             [along @ x[..., i].T for i in (0, 1)]
@@ -88,16 +96,23 @@ class Space:
             raise ValueError(f"element {int(det.min(1).argmin())} is inverted")
         self._inverse = np.stack([d.T, -b.T, -c.T, a.T], axis=-1) / det[..., None]
         position = np.stack([x[..., i] @ self.element.values.T for i in (0, 1)], axis=-1)
-        self.weight = np.ascontiguousarray(det * self.element.weights)
+        area = np.ascontiguousarray(det * self.element.weights)
+        self.weight = area * kinematics.measure(position[..., 0])
+        if self.weight.min() <= 0:
+            raise ValueError(f"element {int(self.weight.min(1).argmin())} is beyond the axis x = 0")
         self.centres = x.mean(1)
-        self._span = np.sqrt(self.weight.sum(1))
+        self._span = np.sqrt(area.sum(1))
         modes = self._raw_modes(position)
         gram = (self.weight[..., None] * modes).swapaxes(1, 2) @ modes
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(modes @ self._orthonormal.swapaxes(1, 2))
-        reference = np.concatenate(np.moveaxis(self.element.gradients, -1, 0)).T
-        parts = (self._inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
-        self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
+        reference, inverse = [*np.moveaxis(self.element.gradients, -1, 0)], self._inverse
+        if kinematics.round:
+            reference.append(self.element.values)
+            inverse = np.concatenate([inverse, 1 / position[..., :1]], axis=2)
+        columns = np.ascontiguousarray(np.concatenate(reference).T)
+        parts = (inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
+        self.mesh = (cells, columns, *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
         self.equation = np.full(points.shape, -1, dtype=np.int64)
         self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
@@ -184,9 +199,11 @@ class Space:
         return out
 
 
-def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+def edge_load_vectors(
+    points: np.ndarray, edges: np.ndarray, kinematics: Kinematics = PLANE_STRAIN
+) -> np.ndarray:
     """Nodal vectors (n, 2) of ``int N_a n ds`` over edges (m, 2 or 3; start, end[, middle]) with
-    unit outward pressure.
+    unit outward pressure, times what lies across: all of a ring, of a body of revolution.
 
     The body lies on the right of start -> end; the vector points out of it. This is the consistent
     nodal load of a uniform pressure of one on the curve as it lies now, so force over it is
@@ -195,6 +212,8 @@ def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
     values, slopes = edge_values(edges.shape[1] - 1, EDGE_POINTS)
     tangent = np.einsum("qa,mai->mqi", slopes, points[edges])
     normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
+    across = kinematics.measure(np.einsum("qa,ma->mq", values, points[edges, 0]))
+    normal = normal * np.broadcast_to(across, normal.shape[:2])[..., None]
     nodal = np.einsum("q,qa,mqi->mai", EDGE_WEIGHTS, values, normal)
     out = np.zeros(points.shape)
     np.add.at(out, edges, nodal)

@@ -7,7 +7,7 @@ through the step sizes; inertia is never solved.
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from operator import mul
 from typing import NamedTuple
@@ -40,6 +40,8 @@ SNAP_ITERATIONS = 60
 #: Iterations of all attempts at a scheduled step.
 MOST_ITERATIONS = 400
 MAX_HALVINGS = 10
+#: Largest share of a step that is tried at once where it goes on from its last good state.
+RESUMED_SHARE = 0.125
 #: Largest share of the work that the energy found may differ by.
 ENERGY_SHARE = 0.35
 #: Reuse the factorised tangent while the residual is below this many tolerances.
@@ -73,9 +75,15 @@ class NonConvergence(RuntimeError):
         What is hard in the scene, if known.
     records : list of Record
         Of every converged scheduled step.
+    halvings : int
+        How often the step was cut; 0 where more attempts at it are of no use.
+    tried : tuple of str
+        What was relaxed in vain.
     """
 
     hard: tuple[str, ...] = ()
+    halvings = 0
+    tried: tuple[str, ...] = ()
 
     def __init__(self, time: float, reason: str, advice: str, where: str = ""):
         super().__init__(f"no convergence after t = {time:.6g} s{where}: {reason}; try {advice}")
@@ -83,7 +91,8 @@ class NonConvergence(RuntimeError):
         self.records: list[Record] = []
 
     def __str__(self):
-        return super().__str__() + (f"; or {hard_here(self.hard)}" if self.hard else "")
+        text = super().__str__() + (f"; or {hard_here(self.hard)}" if self.hard else "")
+        return text + (f"; relaxed in vain: {', '.join(self.tried)}" if self.tried else "")
 
 
 def hard_here(hard: tuple[str, ...]) -> str:
@@ -229,6 +238,10 @@ class QuasiStatic:
         (n, 2) dead nodal forces, N/m, or None.
     friction
         Coulomb's coefficient; None leaves friction out altogether.
+    patience
+        How often a step that failed is gone on with from its last good state, in small shares.
+    most
+        Newton iterations after which the run is given up; 0: never.
     """
 
     def __init__(
@@ -240,7 +253,13 @@ class QuasiStatic:
         observers=(),
         external=None,
         friction=None,
+        patience=0,
+        most=0,
     ):
+        self._most, self._taken = most, 0
+        self.patience = patience
+        self.resumed: list[float] = []  # times (s) at which steps were gone on with
+        self._share = 1.0  # largest of a step that is tried at once
         self.body, self.skin, self.profile, self.observers = body, skin, profile, observers
         self.settings = settings or NewtonSettings()
         self._single = self.settings.single
@@ -254,7 +273,13 @@ class QuasiStatic:
         mirrored = bool(along < 0 <= across and abs(x[skin.nodes[0]]) < 1e-9 * np.ptp(x))
         stiffest = stiffest[skin.edges].min(axis=1)
         self.places = ContactPoints.on(
-            self.points, skin.nodes, skin.edges, stiffest, mirrored, profile.convexity
+            self.points,
+            skin.nodes,
+            skin.edges,
+            stiffest,
+            mirrored,
+            profile.convexity,
+            body.space.kinematics,
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
@@ -455,6 +480,10 @@ class QuasiStatic:
         while iteration < limit:
             iteration += 1
             self._spent += 1
+            self._taken += 1
+            if 0 < self._most < self._taken:
+                reason = f"{self._most} Newton iterations did not suffice"
+                raise NonConvergence(self.time, reason, "a larger on_trouble.budget")
             if self._softened:
                 limit = settings.max_iterations + SNAP_ITERATIONS
             if self._zone_is_tight():
@@ -759,8 +788,12 @@ class QuasiStatic:
         records: list[Record] = []
         strides, last = Strides(iter(steps), between), None
         self._touches.clear()
+        lost, begun = 0, self.time
         while (following := strides.next()) is not None:
             step, passed = following
+            if lost:  # what is left of it
+                left = step.dt if step.dt >= STEADY else step.dt - (self.time - begun)
+                step = replace(step, dt=left, fresh=False)
             try:
                 iterations, halvings, residual = self._complete(
                     step, last, records, strides if between else None
@@ -769,9 +802,15 @@ class QuasiStatic:
                 strides.shorten()
                 continue
             except NonConvergence as problem:
+                if self.patience > 0 and problem.halvings:
+                    self.patience, self._share, last = self.patience - 1, RESUMED_SHARE, None
+                    self.resumed.append(self.time)
+                    lost += problem.halvings
+                    continue
                 problem.records = records
                 raise
             strides.found(step)
+            halvings, lost, begun, self._share = halvings + lost, 0, step.time, 1.0
             last = step if not halvings else None
             self.total_iterations += iterations
             if between:
@@ -807,7 +846,7 @@ class QuasiStatic:
             self._factors = None
         self._follow()
         while done < 1.0:
-            size = min(size, 1.0 - done)
+            size = min(size, self._share, 1.0 - done)
             whole = done + size >= 1.0
             goal = target if whole else begin + (done + size) * (target - begin)
             place = step.distance if whole else start + (done + size) * (step.distance - start)
@@ -857,7 +896,9 @@ class QuasiStatic:
         spent = self._spent > MOST_ITERATIONS
         if size >= 0.5**MAX_HALVINGS and not spent and not (aside and halvings > 1):
             return
-        where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
+        unit = self.body.space.kinematics.force_unit
+        force = f"{self.force:.4g} {unit}"
+        where = f" (depth {self.depth * 1e3:.4g} mm, force {force} of the meshed part)"
         reason, advice = str(failure), self._advice(str(failure))
         if spent:
             tried = (
@@ -867,7 +908,9 @@ class QuasiStatic:
         if aside:
             way = f"{self.distance * 1e3:.3g} mm"
             reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"
-        raise NonConvergence(self.time, reason, advice, where) from failure
+        problem = NonConvergence(self.time, reason, advice, where)
+        problem.halvings = 0 if aside else halvings
+        raise problem from failure
 
     def _slips_off(self, record):
         """Was the pad touched, on its way along the profile, by its side only? Then nothing can

@@ -20,6 +20,7 @@ from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import PadMesh
 
 _USUAL_FORCE = 0.01  # N, with which a finger touches
+_BENDS, _SAME = 30, 1e-3  # steps in which a cone's bend over its contact is found, and how well
 _FLATTER = 0.8  # pieces less than so much narrower than the contact are the contact
 
 
@@ -40,7 +41,7 @@ def case_of(scene: Scene, rules: Rules, narrowest: float | None = None) -> Case:
     _check_over_pad(scene, external)
     # noise is no contact's curvature
     profile = stimulus.felt(_usual_edge(scene, external, rules))
-    pad = pad_estimate(scene.specimen, external, stimulus.face)
+    pad = pad_estimate(scene.specimen, external, stimulus.face, scene.axisymmetric)
     case = Case(scene, rules, external, profile, pad)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets
     # the sharpest convexity
@@ -54,7 +55,9 @@ def case_of(scene: Scene, rules: Rules, narrowest: float | None = None) -> Case:
 
 def external_mesh(scene: Scene) -> PadMesh | None:
     """The scene's own mesh, if it names one."""
-    return None if scene.specimen.mesh is None else read_specimen_mesh(scene.specimen).elevated()
+    if scene.specimen.mesh is None:
+        return None
+    return read_specimen_mesh(scene.specimen, scene.axisymmetric).elevated()
 
 
 def _usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
@@ -71,7 +74,11 @@ def _check_over_pad(scene: Scene, external: PadMesh | None) -> None:
     """`PlanError` for a measured profile that is not over the finger when it comes down."""
     first, last = scene.stimulus.known
     if external is not None:
-        half = np.ptp(external.points[:, 0]) / 2
+        half = (
+            np.abs(external.points[:, 0]).max()
+            if external.half
+            else np.ptp(external.points[:, 0]) / 2
+        )
     else:
         half = scene.specimen.half_width
     if first > half / 2 or last < -half / 2:
@@ -91,11 +98,17 @@ def worst_contact(case: Case, curvature: float) -> ContactEstimate:
     worst = ContactEstimate()
     for leg in scene.motion:
         if leg.force is not None:
-            now = pad.pressed(leg.force / scene.specimen.contact_length, curvature)
+            pressed, to = pad.pressed, leg.force / scene.specimen.contact_length
         elif leg.depth is not None:
-            now = pad.pressed_to(leg.depth, curvature)
+            pressed, to = pad.pressed_to, leg.depth
         else:
             continue
+        now, bend = pressed(to, curvature), curvature
+        for _ in range(_BENDS if curvature == profile.convexity else 0):
+            before, bend = bend, profile.bend_over(now.half_width)
+            if abs(bend - before) <= _SAME * before:
+                break
+            now = pressed(to, bend)
         if keeps_depth:
             now = pad.pressed_to(now.depth + profile.dip, curvature)
         worst = max(worst, now, key=lambda estimate: estimate.depth)

@@ -43,7 +43,8 @@ def preset_for(case: Case, aim: float | None) -> Preset:
     thesis, edge = rules.presets["thesis"], scene.by_hand.skin_edge
     if edge is None:
         return thesis
-    error = ContactErrors(rules, max(case.contact.half_width, 1e-5)).on_built_mesh(edge)
+    half_width = max(case.contact.half_width, 1e-5)
+    error = ContactErrors(rules, half_width, turned=scene.axisymmetric).on_built_mesh(edge)
     layer_edge = thesis.layer_edge * (edge / thesis.skin_edge)
     return replace(thesis, skin_edge=edge, layer_edge=layer_edge, tolerance=error)
 
@@ -66,11 +67,15 @@ def _cheapest(case: Case, tolerance: float) -> Preset:
     where it is.
     """
     scene, rules, moves = case.scene, case.rules, case.moves
-    thesis, known = rules.presets["thesis"], rules.errors
+    thesis = rules.presets["thesis"]
     timed = bool(scene.specimen.prony) and any(
         duration is not None for duration in leg_durations(scene)
     )
     half_width = earliest_half_width(case, timed)
+    asked = ContactErrors(
+        rules, half_width, None, case.stroke, scene.stimulus.irregular, scene.axisymmetric
+    )
+    known = asked.known
     still = not moves and scene.specimen.mesh is None and _only_inner(scene)
     outer = 1 if _only_inner(scene) else 3  # columns of outer ridges
     found = []
@@ -78,8 +83,7 @@ def _cheapest(case: Case, tolerance: float) -> Preset:
     for rows, steps in product(known.mesh, (n for n in known.time if n >= least_steps)):
         edge = known.edge * THESIS_ROWS / rows
         growth = min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
-        time = steps if timed or moves else None
-        errors = ContactErrors(rules, half_width, time, case.stroke, scene.stimulus.irregular)
+        errors = replace(asked, steps=steps if timed or moves else None)
         for finer in 2 ** np.arange(0, _FINEST_FOCUS, 0.5) if still else (1,):
             # the right half has about 7 columns and 4 rows an element across the epidermis
             more = np.log(finer) / np.log(growth)

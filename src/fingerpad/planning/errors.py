@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -99,7 +99,8 @@ class MeasuredErrors:
     Attributes
     ----------
     half_widths
-        m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp.
+        m, of the contact: in plane strain with 1260 1/m, 210 1/m and the flat plate at the top of
+        the ramp; of bodies of revolution with spheres, a cone and plates.
     edge
         m, along the skin, where 7 elements go across the epidermis.
     mesh
@@ -118,7 +119,7 @@ class MeasuredErrors:
     mesh: Mapping[int, tuple[float, ...]]
     time: Mapping[int, tuple[float, ...]]
     energy: Mapping[int, tuple[float, ...]]
-    strokes: Mapping[str, StrokeErrors]
+    strokes: Mapping[str, StrokeErrors] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -163,6 +164,8 @@ class ContactErrors:
         The pad's along the surface, if there is one.
     bumpy
         Whether the surface has bumps of its own within the contact, as measured ones have.
+    turned
+        Whether it is of a body of revolution.
     """
 
     rules: Any
@@ -170,6 +173,12 @@ class ContactErrors:
     steps: float | None = None
     stroke: Stroke | None = None
     bumpy: bool = False
+    turned: bool = False
+
+    @property
+    def known(self) -> MeasuredErrors:
+        """The measured errors that are asked."""
+        return self.rules.errors_turned if self.turned else self.rules.errors
 
     def on_own_mesh(
         self, element: str, edge: float, at_receptors: float | None
@@ -220,7 +229,7 @@ class ContactErrors:
             m, skin edge around the contact where that is coarser: no finer than the widest contact
             measured needs it.
         """
-        known = self.rules.errors
+        known = self.known
         found = [self._measured(edge, self.half_width)]
         if self.stroke is None:
             # on the way along a surface edges pass over many nodes, which is in what was measured
@@ -233,7 +242,9 @@ class ContactErrors:
 
     @property
     def _factor(self) -> float:
-        return self.rules.safety * (self.rules.bumps if self.bumpy else 1.0)
+        rules = self.rules
+        bumps = rules.bumps_turned if self.turned else rules.bumps
+        return rules.safety * (bumps if self.bumpy else 1.0)
 
     def _of_press(
         self, table: Mapping[int, tuple[float, ...]], rows: float, half_width: float
@@ -246,7 +257,7 @@ class ContactErrors:
             return 0.0
         rules = self.rules
         return self._factor * self._at(
-            rules.errors.time, self.steps, rules.time_order, half_width or self.half_width
+            self.known.time, self.steps, rules.time_order, half_width or self.half_width
         )
 
     def _at(self, table: Mapping[int, Any], count: float, order: float, half_width: float) -> float:
@@ -257,11 +268,11 @@ class ContactErrors:
             _read(dict(zip(table, column, strict=True)), count, order)
             for column in zip(*table.values(), strict=True)
         ]
-        measured = self.rules.errors.half_widths
+        measured = self.known.half_widths
         return float(np.exp(np.interp(np.log(half_width), np.log(measured), np.log(columns))))
 
     def _measured(self, edge: float, half_width: float) -> float:
-        rules, known = self.rules, self.rules.errors
+        rules, known = self.rules, self.known
         # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
         alike = edge * max(known.half_widths[0] / half_width, 1.0)
         rows = known.edge * THESIS_ROWS / alike

@@ -124,9 +124,11 @@ def _planned(
         steps_per_leg / every if timed or case.moves else None,
         case.stroke,
         scene.stimulus.irregular,
+        scene.axisymmetric,
     )
     mesh = _built(case, preset, parts, errors) if case.external is None else _given(case, errors)
-    nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
+    cut = parts.half and not (mesh.external is not None and mesh.external.half)
+    nodes = mesh.nodes // 2 + 1 if cut else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
 
     surface = surface_of(case, mesh.edge, partial(worst_contact, case))
@@ -175,7 +177,7 @@ def _planned(
         once=scene.once,
         unbounded=_unbounded(case, mesh, surface),
         specimen=(
-            *specimen_said(scene.specimen, mesh.external),
+            *specimen_said(scene.specimen, mesh.external, scene.axisymmetric),
             *filter(None, [mesh.raised]),
             *scene.stimulus.notes,
         ),
@@ -290,6 +292,8 @@ def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
         corners = profile.tangents()
     else:
         pressure = 2 / np.pi * case.force / half_width
+        if case.scene.axisymmetric:
+            pressure = 1.5 / np.pi * case.force / half_width**2
         corners = seen_corners(
             profile.corners(), case.pad.stiff, pressure, mesh.edge / 2, half_width
         )

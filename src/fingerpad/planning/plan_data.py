@@ -20,6 +20,7 @@ from fingerpad.planning.bounds import percent, receptors_of
 from fingerpad.planning.effect import Effect, Parts
 from fingerpad.planning.effects import parts_of
 from fingerpad.planning.estimates import ContactEstimate
+from fingerpad.planning.relaxed import Relaxed
 from fingerpad.planning.schedule import BETWEEN, NEWTON
 from fingerpad.planning.surface import Surface
 from fingerpad.planning.unbounded import OF_STROKES, Unbounded
@@ -107,6 +108,8 @@ class Plan:
         On an external mesh, by quantity.
     receptor_height
         On an external mesh the largest height of elements that receptors are in, over their depth.
+    relaxed
+        What a run in trouble has relaxed of it.
     """
 
     effects: dict[str, Effect]
@@ -139,6 +142,7 @@ class Plan:
     unresolved_edge: bool = False
     errors: dict[str, float] = field(default_factory=dict)
     receptor_height: float | None = None
+    relaxed: Relaxed = Relaxed()
 
     def parts(self, scene: Scene) -> Parts:
         """What the effects that are on make of the parts of a simulation of ``scene``."""
@@ -172,11 +176,12 @@ class Plan:
         )
 
     @property
-    def stepping(self) -> tuple[int, bool, float | None, int, int]:
+    def stepping(self) -> tuple[int, bool, float | None, int, int, int]:
         """What :func:`schedule` needs to know: steps of a leg, does time matter, longest step of a
-        slide (m), stride, every.
+        slide (m), stride, every, pieces of an increment.
         """
-        return self.steps_per_leg, self.timed, self.slide_step, self.stride, self.every
+        steps = self.steps_per_leg, self.timed, self.slide_step, self.stride, self.every
+        return (*steps, self.relaxed.pieces)
 
     @property
     def states_per_leg(self) -> float:
@@ -278,6 +283,7 @@ class Plan:
         if self.missed():
             lines.append(self.missed())
         lines += [f"note: {note}" for note in self.surface.notes]
+        lines += [f"relaxed: {said}" for said in self.relaxed.said]
         lines.append(f"predicted cost: {self.predicted_cost_s:.2g} s of one core")
         return Group(effects, details, *whole, *map(Text, lines))
 

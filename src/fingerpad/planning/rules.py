@@ -38,7 +38,12 @@ class Preset:
     focus: float | None = None
 
 
-_TABLES = {"presets": dict[str, Preset], "errors": MeasuredErrors, "own": OwnErrors}
+_TABLES = {
+    "presets": dict[str, Preset],
+    "errors": MeasuredErrors,
+    "errors_turned": MeasuredErrors,
+    "own": OwnErrors,
+}
 """Types of the rules that are no numbers."""
 
 

@@ -42,13 +42,14 @@ def schedule(
     slide_step: float | None = None,
     stride: int = 1,
     every: int = 1,
+    pieces: int = 1,
     present=None,
 ):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`).
 
     A steady press is one step, which is cut where Newton's method does not converge. Friction
     remembers how it was loaded, and who gives the number of steps by hand (``slide_step`` None)
-    wants to see them: then there are more.
+    wants to see them: then there are more. A run in trouble takes ``pieces`` times as many.
     """
     increments = _ROUND_EDGES if scene.stimulus.singular else 1
     if scene.friction or slide_step is None:
@@ -61,7 +62,7 @@ def schedule(
         snapshots=scene.outputs.snapshots,
         present=present,
         slide_step=slide_step,
-        increments=min(steps_per_leg, increments),
+        increments=min(steps_per_leg, pieces * increments),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
         stride=stride,
         every=every,

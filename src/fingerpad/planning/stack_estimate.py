@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import j1
+from scipy.special import j0, j1
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
@@ -26,11 +26,11 @@ _NARROWEST = 1e-4  # half width of a contact, in thicknesses
 _FLAT = 5.0  # apex radius, in half widths, beyond which a pad is a flat one
 
 
-def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
+def specimen_said(specimen, external: PadMesh | None, turned: bool = False) -> tuple[str, ...]:
     """What a specimen is made of, held by and free at, and what its scene left out, in words;
-    nothing of a thesis's outline.
+    nothing of a thesis's outline. ``turned``: it is a body of revolution.
     """
-    lines, stack = [], specimen.stack
+    lines, stack = [_TURNED] if turned else [], specimen.stack
     if external is not None:
         wide, high = (np.ptp(external.points, axis=0) * 1e3).tolist()
         free = [name for name in external.curves if name not in (SKIN, UNNAMED, *external.fixed)]
@@ -55,6 +55,13 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
 
 
+_TURNED = (
+    "a body of revolution: the right half of the section, turned about x = 0 (a pad is a dome, a "
+    "slab a disc, ridges are rings); forces are in N; errors are those measured under spheres, a "
+    "cone and plates, on a mesh of your own those measured in plane strain"
+)
+
+
 def _where_met(external: PadMesh) -> str:
     """Where the indenter comes down on a mesh, in words."""
     skin = external.points[external.curves[SKIN][:, :2], 0] * 1e3
@@ -72,9 +79,11 @@ def _where_met(external: PadMesh) -> str:
     return said
 
 
-def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> PadEstimate:
+def pad_estimate(
+    specimen, external: PadMesh | None, reach: float = np.inf, turned: bool = False
+) -> PadEstimate:
     """What is known of a scene's specimen; ``external`` is its own mesh, the stimulus ends
-    ``reach`` m beside its middle.
+    ``reach`` m beside its middle, and it is ``turned`` about that.
 
     A finger is judged by the thesis's measures, any other stack of layers by the layers below its
     middle.
@@ -88,23 +97,27 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
     if specimen.moduli == "instantaneous" and specimen.prony:
         relax = 1 - sum(term.g for term in specimen.prony)
     outline, stack = specimen.outline, specimen.stack
-    if outline is not None:
+    if outline is not None and turned:
+        finger, radius, half_width = None, outline.apex_radius, outline.half_width
+        below = _layers_of(specimen)
+    elif outline is not None:
         finger = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
     elif stack is not None:
         finger, radius, half_width = None, stack.radius or 1e3, stack.half_width
         below = zip(stack.names, stack.thicknesses, strict=True)
     else:
         radius, below = measures.apex_radius(external), measures.layers_below(external)
-        half_width = 0.5 * float(np.ptp(external.points[external.curves["skin"], 0]))
+        half_width = float(np.ptp(external.points[external.curves["skin"], 0]))
+        half_width *= 1.0 if external.half else 0.5
         has_bone = {*REGIONS} <= {*external.regions} and "bone" in external.curves
         curved = radius < _FLAT * half_width
-        finger = measures.apex_measures(external) if has_bone and curved else None
+        finger = measures.apex_measures(external) if has_bone and curved and not turned else None
     if finger is not None:
         stiff, *soft = (_plane(specimen.materials[name]) for name in REGIONS)
         return PadEstimate(*finger, relax * stiff, relax * min(soft))
     layers = [(thickness, specimen.material(name)) for name, thickness in below]
     thickness, outermost = layers[0]
-    return StackEstimate(
+    return (RoundEstimate if turned else StackEstimate)(
         radius,
         thickness,
         sum(thickness for thickness, _ in layers),
@@ -116,6 +129,19 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
             for thickness, layer in layers
         ),
     )
+
+
+def _layers_of(specimen) -> list[tuple[str, float]]:
+    """Names and thicknesses (m) of a finger's layers below its apex."""
+    outline, names = specimen.outline, list(specimen.materials)
+    corneum = outline.stratum_corneum_thickness if names[0] == "stratum_corneum" else 0.0
+    thick = [
+        *filter(None, [corneum]),
+        outline.epidermis_thickness - corneum,
+        outline.dermis_thickness,
+    ]
+    thick.append(outline.soft_thickness - sum(thick))
+    return list(zip(names, thick, strict=True))
 
 
 def _plane(layer) -> float:
@@ -201,3 +227,26 @@ class StackEstimate(PadEstimate):
     def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
         """Contact at ``depth`` m."""
         return self._found(depth, 1, curvature)
+
+
+@dataclass(frozen=True)
+class RoundEstimate(StackEstimate):
+    """The same under bodies of revolution, forces in N: a pressure J0(kr) sinks as much as cos(kx)
+    does, so that only the transforms of the pressures are others.
+    """
+
+    def _under_hertz(self, half_width):
+        k, sinking = self._spectrum
+        s = k * half_width
+        # of 1 N, and from a step of ln k over pi to k dk
+        load = 1.5 * (np.sin(s) - s * np.cos(s)) / s**3 * k * sinking
+        return float(load.sum()), float((load * (1 - j0(s))).sum())
+
+    def _under_plate(self, half_width):
+        k, sinking = self._spectrum
+        s = k * half_width
+        return float((2 * j1(s) ** 2 / s**2 * k * sinking).sum())
+
+    def on_rounding(self, force, flat, radius):
+        # pressure grows towards an edge at which F/(2 a) N/m would press a bar
+        return super().on_rounding(force / (2 * (flat + radius)), flat, radius)

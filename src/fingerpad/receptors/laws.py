@@ -97,11 +97,13 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
 
 @dataclass(frozen=True)
 class SpatialSum:
-    """Eq 4-4: strain energy density at a depth as a weighted sum of the contact pressure over it.
+    """Strain energy density at a depth from a weighted sum W of the contact pressure over it.
 
-    ``SE(t) = integral of p(x, t) exp(-|x - x_ref| / r) dx * (per_depth * DOI(t) + constant)``. The
-    thesis sums over its nodes; an integral does not depend on their spacing (its constants are
-    these times that spacing).
+    ``W(t) = integral of p(x, t) exp(-|x - x_ref| / r) dx`` and ``SE(t) = W (per_depth DOI(t) +
+    constant + square W)``. Eq 4-4 has the first two constants. The thesis sums over its nodes; an
+    integral does not depend on their spacing (its constants are these times that spacing). The
+    third alone says what elasticity says: stress is linear in pressure, energy in the square of
+    stress.
 
     Attributes
     ----------
@@ -111,11 +113,14 @@ class SpatialSum:
         A1, 1/m^2.
     constant
         A2, 1/m.
+    square
+        1/(Pa m^2).
     """
 
     r: float
-    per_depth: float
-    constant: float
+    per_depth: float = 0.0
+    constant: float = 0.0
+    square: float = 0.0
 
     def weighted_pressure(self, x, pressure, reference=0.0) -> np.ndarray:
         """The integral (...), Pa m. x, pressure: (..., n) m, Pa. reference: (...) m, where the
@@ -131,6 +136,13 @@ class SpatialSum:
             pressure[..., touched],
         )
 
+    def of_sum(self, weighted, indentation=0.0) -> np.ndarray:
+        """Strain energy density (...), Pa. weighted: (...) Pa m, the integral. indentation: (...)
+        m.
+        """
+        scale = self.per_depth * np.asarray(indentation) + self.constant
+        return weighted * (scale + self.square * weighted)
+
     def strain_energy(self, x, pressure, indentation=0.0, reference=0.0) -> np.ndarray:
         """Strain energy density (...), Pa.
 
@@ -145,9 +157,7 @@ class SpatialSum:
         reference
             (...) m, lateral place of the receptor: where it is at rest plus what it has shifted by.
         """
-        return self.weighted_pressure(x, pressure, reference) * (
-            self.per_depth * np.asarray(indentation) + self.constant
-        )
+        return self.of_sum(self.weighted_pressure(x, pressure, reference), indentation)
 
 
 def rectified(values) -> np.ndarray:

@@ -83,7 +83,9 @@ class MaterialPoints:
         nodes = space.points[self.cells]
         jacobian = np.einsum("nai,naj->nij", slopes, nodes)
         self.grad = np.ascontiguousarray(np.einsum("nij,naj->nai", np.linalg.inv(jacobian), slopes))
-        self.psi = space.pressure_modes(element, np.einsum("na,nai->ni", values, nodes))
+        place = np.einsum("na,nai->ni", values, nodes)
+        self.psi = space.pressure_modes(element, place)
+        self.values, self.x, self.kinematics = values, place[:, 0], space.kinematics
         self.shear, self.bulk = body.shear[element], body.bulk[element]
         self.laws = tuple(part.at(element) for part in body.laws)
         self.shear_instantaneous = (
@@ -94,24 +96,29 @@ class MaterialPoints:
         self.branches = Branches(prony, (len(element), 4)) if prony else None
 
     def _deformation(self, body):
-        """Deformation gradient (nr, 2, 2), its determinant (nr,), strain (nr, 2, 2) and principal
-        stretches (nr, 2), rising; the linear theory has no more than the strain.
+        """Deformation gradient in the section (nr, 2, 2) and across it (nr,), its determinant
+        (nr,), strain in the section (nr, 2, 2) and across it (nr,), and principal stretches (nr,
+        2) of the section, rising; the linear theory has no more than the strain.
         """
-        gradient = np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
+        u = body.u[self.cells]
+        gradient = np.einsum("nai,naj->nij", u, self.grad)
+        lateral = np.einsum("na,na->n", self.values, u[..., 0])
+        across = self.kinematics.hoop(lateral, self.x, gradient[:, 0, 0])
         if self._linear:
             strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
-            f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
-            return f, jac, strain, 1 + np.linalg.eigvalsh(strain)
-        f = np.eye(2) + gradient
-        jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
-        return f, jac, logarithmic_strain(f), np.linalg.svd(f, compute_uv=False)[:, ::-1]
+            f, one = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
+            return f, one, one, strain, across, 1 + np.linalg.eigvalsh(strain)
+        f, hoop = np.eye(2) + gradient, 1 + across
+        jac = (f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]) * hoop
+        stretch = np.linalg.svd(f, compute_uv=False)[:, ::-1]
+        return f, hoop, jac, logarithmic_strain(f), np.log(hoop), stretch
 
     def _isochoric(self, body):
+        f, hoop, _, strain, across, _ = self._deformation(body)
         if not self._linear:
-            return isochoric_stress(self.laws, body.u, self.cells, self.grad, self.shear)
-        strain = self._deformation(body)[2]
-        mean = np.trace(strain, axis1=1, axis2=2) / 3
-        parts = [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean]
+            return isochoric_stress(self.laws, f, hoop, self.shear)
+        mean = (np.trace(strain, axis1=1, axis2=2) + across) / 3
+        parts = [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], across - mean]
         return 2 * self.shear[:, None] * np.stack(parts, axis=1)
 
     def _total(self, body):
@@ -128,28 +135,31 @@ class MaterialPoints:
     def sample(self, body) -> dict[str, np.ndarray]:
         """What a receptor could respond to, (nr,) each, at the body's present state.
 
-        The five strain energy densities (Pa, see :func:`strain_energies`), the principal strains in
-        the plane (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in
+        The five strain energy densities (Pa, see :func:`strain_energies`), the principal strains
+        (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in
         compression and in tension; zero if there is none), ``von_mises_stress`` and
         ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation`` (J - 1 as the
         element projects it).
         """
         dilatation, (stress, total) = self._dilatation(body), self._total(body)
-        f, jac, strain, stretch = self._deformation(body)
+        f, hoop, jac, *strain, stretch = self._deformation(body)
         branches = []
         if self.branches is not None:
             branches = list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
             network = deviator_square(stress) / (4 * self.shear)
         else:
-            network = isochoric_energy(self.laws, f, self.shear)
+            network = isochoric_energy(self.laws, f, hoop, self.shear)
         volumetric = 0.5 * self.bulk * dilatation**2
         moduli = self.shear, self.shear_instantaneous
-        found = strain_energies(f, strain, stress, branches, network, *moduli, volumetric)
+        deformed = f, hoop, *strain
+        found = strain_energies(*deformed, stress, branches, network, *moduli, volumetric)
+        stretch_across = 1 + strain[1] if self._linear else hoop
+        tau = push_forward(f, hoop, total)
         found |= {
-            "compressive_strain": np.maximum(1 - stretch[:, 0], 0),
-            "tensile_strain": np.maximum(stretch[:, 1] - 1, 0),
-            "von_mises_stress": np.sqrt(1.5 * deviator_square(push_forward(f, total))) / jac,
+            "compressive_strain": np.maximum(1 - np.minimum(stretch[:, 0], stretch_across), 0),
+            "tensile_strain": np.maximum(np.maximum(stretch[:, 1], stretch_across) - 1, 0),
+            "von_mises_stress": np.sqrt(1.5 * deviator_square(tau)) / jac,
             "hydrostatic_pressure": -self.bulk * dilatation,
             "dilatation": dilatation,
         }
@@ -164,9 +174,9 @@ class MaterialPoints:
         """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2:
         stretches less one, rising).
         """
-        f, jac, _, stretch = self._deformation(body)
+        f, hoop, jac, *_, stretch = self._deformation(body)
         pressure = (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
-        stress = push_forward(f, self._total(body)[1]) / jac[:, None] + pressure
+        stress = push_forward(f, hoop, self._total(body)[1]) / jac[:, None] + pressure
         return {"cauchy_stress": stress, "principal_strains": stretch - 1}
 
     def _dilatation(self, body):
@@ -181,7 +191,9 @@ def logarithmic_strain(f: np.ndarray) -> np.ndarray:
     return (axes * (0.5 * np.log(squares))[:, None, :]) @ axes.swapaxes(1, 2)
 
 
-def strain_energies(f, strain, stress, branches, network, shear, shear_instantaneous, volumetric):
+def strain_energies(
+    f, hoop, strain, across, stress, branches, network, shear, shear_instantaneous, volumetric
+):
     """Strain energy densities of a finite linear viscoelastic solid, Pa (J per undeformed m^3).
 
     Of shape only; ``volumetric``, kappa/2 (J - 1)^2, which does not relax, is added to each. With
@@ -203,8 +215,8 @@ def strain_energies(f, strain, stress, branches, network, shear, shear_instantan
 
     Parameters
     ----------
-    f, strain
-        (nr, 2, 2), in the plane.
+    f, hoop, strain, across
+        Deformation gradient and strain in the section, (nr, 2, 2), and across it, (nr,).
     stress
         (nr, 4) long-term isochoric second Piola-Kirchhoff stress.
     branches
@@ -217,15 +229,16 @@ def strain_energies(f, strain, stress, branches, network, shear, shear_instantan
     total, springs = stress, 0.0
     for beta, q in branches:
         total = total + q
-        springs = springs + deviator_square(push_forward(f, q)) / (4 * beta * shear)
+        springs = springs + deviator_square(push_forward(f, hoop, q)) / (4 * beta * shear)
     instantaneous = long_term = half = network
     if shear_instantaneous is not None:
-        tau = push_forward(f, total)
+        tau = push_forward(f, hoop, total)
         square, mean = deviator_square(tau), (tau[:, 0] + tau[:, 1] + tau[:, 3]) / 3
         instantaneous, long_term = square / (4 * shear_instantaneous), square / (4 * shear)
         half = (
             0.5 * ((tau[:, 0] - mean) * strain[:, 0, 0] + (tau[:, 1] - mean) * strain[:, 1, 1])
             + tau[:, 2] * strain[:, 0, 1]
+            + 0.5 * (tau[:, 3] - mean) * across
         )
     energies = {
         "strain_energy_density": instantaneous,

@@ -2,7 +2,8 @@
 language.
 
 Find the displacement u of the reference body, with F = I + grad u, I1 = tr C, J = det F in three
-dimensions (F33 = 1), such that
+dimensions (F33 = 1, or 1 + u_r / R in a body of revolution, whose volume is 2 pi R times that of
+its section), such that
 
     int P : grad v = external(v) for every v,      P = a P_iso(F) + p cof F + F H
     P_iso = d psi / dF,  psi = W(J^(-2/3) I1, J^(-4/3) I2)
@@ -24,6 +25,7 @@ is compiled, condensed or shared with the solver, whose element loops the tests 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from types import SimpleNamespace
 
 import numpy as np
 from skfem import (
@@ -42,7 +44,7 @@ from skfem import (
     MeshTri1,
     MeshTri2,
 )
-from skfem.helpers import ddot, div, grad, sym_grad
+from skfem.helpers import ddot, grad, trace
 
 _STEP = 1e-30  # of the complex-step derivatives, exact to round-off
 
@@ -72,16 +74,31 @@ ELEMENTS = {
 }
 
 
+def gradient(v, w):
+    """Of a field in the section, in three dimensions."""
+    plane = grad(v)
+    out = np.zeros((3, 3, *plane.shape[2:]), plane.dtype)
+    out[:2, :2], out[2, 2] = plane, w.round * v[0] / w.x[0]
+    return out
+
+
+def measure(w):
+    """Of what lies across the section."""
+    return 1 + w.round * (2 * np.pi * w.x[0] - 1)
+
+
 def identity(f):
-    return np.eye(2).reshape(2, 2, 1, 1) + 0 * f
-
-
-def determinant(f):
-    return f[0, 0] * f[1, 1] - f[0, 1] * f[1, 0]
+    return np.eye(3).reshape(3, 3, 1, 1) + 0 * f
 
 
 def cofactor(f):
-    return np.array([[f[1, 1], -f[1, 0]], [-f[0, 1], f[0, 0]]])
+    """By the rule of Sarrus, which takes complex steps."""
+    rows = [np.cross(f[(i + 1) % 3], f[(i + 2) % 3], axis=0) for i in range(3)]
+    return np.array(rows)
+
+
+def determinant(f):
+    return np.einsum("j...,j...->...", f[0], cofactor(f)[0])
 
 
 def product(a, b):
@@ -89,12 +106,12 @@ def product(a, b):
 
 
 def isochoric_stress(f, slopes):
-    """dW/dF of W(J^(-2/3) I1, J^(-4/3) I2); ``slopes`` gives W's two derivatives at its two
-    arguments, Pa.
+    """dW/dF (3, 3, ...) of W(J^(-2/3) I1, J^(-4/3) I2); ``slopes`` gives W's two derivatives at its
+    two arguments, Pa.
     """
     c, j = product(np.swapaxes(f, 0, 1), f), determinant(f)
-    i1 = c[0, 0] + c[1, 1] + 1
-    i2 = (i1**2 - (c[0, 0] ** 2 + c[1, 1] ** 2 + 2 * c[0, 1] ** 2 + 1)) / 2
+    i1 = trace(c)
+    i2 = (i1**2 - trace(product(c, c))) / 2
     first, second = slopes(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2)
     transposed_inverse = cofactor(f) / j
     change_1 = 2 * j ** (-2 / 3) * (f - i1 / 3 * transposed_inverse)
@@ -102,13 +119,17 @@ def isochoric_stress(f, slopes):
     return first * change_1 + second * change_2
 
 
+def strain(v, w):
+    slope = gradient(v, w)
+    return (slope + np.swapaxes(slope, 0, 1)) / 2
+
+
 def deviator(e):
-    """Of a strain in the plane, with the mean of three dimensions."""
-    return e - (e[0, 0] + e[1, 1]) / 3 * identity(e)
+    return e - trace(e) / 3 * identity(e)
 
 
 def deformation_gradient(w):
-    return identity(w.u.grad) + grad(w.u)
+    return identity(gradient(w.u, w)) + gradient(w.u, w)
 
 
 def stress(f, w, slopes):
@@ -120,40 +141,43 @@ def stress(f, w, slopes):
 
 
 def internal_force(slopes):
-    return LinearForm(lambda v, w: ddot(stress(deformation_gradient(w), w, slopes), grad(v)))
+    def form(v, w):
+        return measure(w) * ddot(stress(deformation_gradient(w), w, slopes), gradient(v, w))
+
+    return LinearForm(form)
 
 
 def tangent(slopes):
     def form(du, v, w):
-        f = deformation_gradient(w) + 1j * _STEP * grad(du)
-        return ddot(np.imag(stress(f, w, slopes)) / _STEP, grad(v))
+        f = deformation_gradient(w) + 1j * _STEP * gradient(du, w)
+        return measure(w) * ddot(np.imag(stress(f, w, slopes)) / _STEP, gradient(v, w))
 
     return BilinearForm(form)
 
 
 @BilinearForm
 def dilatation_change(du, q, w):
-    return q * w.mode * ddot(cofactor(deformation_gradient(w)), grad(du))
+    return measure(w) * q * w.mode * ddot(cofactor(deformation_gradient(w)), gradient(du, w))
 
 
 @LinearForm
 def dilatation(q, w):
-    return q * w.mode * (determinant(deformation_gradient(w)) - 1)
+    return measure(w) * q * w.mode * (determinant(deformation_gradient(w)) - 1)
 
 
 @BilinearForm
 def linear_shape(u, v, w):
-    return 2 * w.mu * ddot(deviator(sym_grad(u)), sym_grad(v))
+    return measure(w) * 2 * w.mu * ddot(deviator(strain(u, w)), strain(v, w))
 
 
 @BilinearForm
 def linear_dilatation(u, q, w):
-    return q * w.mode * div(u)
+    return measure(w) * q * w.mode * trace(gradient(u, w))
 
 
 @LinearForm
 def gram(q, w):
-    return q * w.mode * w.other
+    return measure(w) * q * w.mode * w.other
 
 
 @dataclass(frozen=True)
@@ -170,6 +194,8 @@ class WeakForm:
         Key of :data:`ELEMENTS`.
     kappa, pointwise
         (ne,) Pa.
+    axisymmetric
+        Whether the mesh is turned about x = 0.
     """
 
     points: np.ndarray
@@ -177,6 +203,7 @@ class WeakForm:
     element: str
     kappa: np.ndarray
     pointwise: np.ndarray | float = 0.0
+    axisymmetric: bool = False
 
     @cached_property
     def basis(self) -> Basis:
@@ -219,8 +246,19 @@ class WeakForm:
     def _pressure(self):
         element = ElementQuad0() if "Q" in self.element else ElementTriP0()
         pressure = Basis(self.basis.mesh, element, quadrature=self.basis.quadrature)
-        table = [[gram.assemble(pressure, mode=a, other=b) for b in self.modes] for a in self.modes]
+        modes, turned = self.modes, float(self.axisymmetric)
+        table = [
+            [gram.assemble(pressure, mode=a, other=b, round=turned) for b in modes] for a in modes
+        ]
         return pressure, np.linalg.inv(np.moveaxis(np.array(table), -1, 0))
+
+    def deformation(self, u: np.ndarray) -> np.ndarray:
+        """Deformation gradient (3, 3, ne, nq) of the displacement (n, 2)."""
+        field = self.field(u)
+        where = SimpleNamespace(
+            u=field, x=np.asarray(self.basis.global_coordinates()), round=float(self.axisymmetric)
+        )
+        return deformation_gradient(where)
 
     def field(self, u: np.ndarray):
         """The displacement (n, 2) as scikit-fem interpolates it."""
@@ -231,8 +269,9 @@ class WeakForm:
     def theta(self, u: np.ndarray) -> np.ndarray:
         """Projected dilatation at the quadrature points (ne, nq) of finite strain."""
         pressure, inverse = self._pressure
+        fields = {"u": self.field(u), "round": float(self.axisymmetric)}
         moments = np.array(
-            [dilatation.assemble(pressure, u=self.field(u), mode=mode) for mode in self.modes]
+            [dilatation.assemble(pressure, **fields, mode=mode) for mode in self.modes]
         )
         return np.einsum("aeq,eab,be->eq", np.array(self.modes), inverse, moments)
 
@@ -245,12 +284,14 @@ class WeakForm:
             "u": field,
             "p": self.kappa[:, None] * theta,
             "k": pointwise,
-            "h": history + 0 * field.grad,
+            "h": history + np.zeros((3, 3, *field.grad.shape[2:])),
+            "round": float(self.axisymmetric),
         }
 
     def _projected(self, form, **fields):
         """sum_ab kappa G^-1_ab B_a B_b of the form B that gives the moments of a dilatation."""
         pressure, inverse = self._pressure
+        fields["round"] = float(self.axisymmetric)
         moments = [form.assemble(self.basis, pressure, mode=mode, **fields) for mode in self.modes]
         weights = self.kappa[:, None, None] * inverse
         return sum(
@@ -266,7 +307,7 @@ class WeakForm:
         factor: float = 1.0,
         history: np.ndarray | float = 0.0,
     ) -> np.ndarray:
-        """Internal force (n, 2) of finite strain; history: (2, 2, ne, nq) Pa."""
+        """Internal force (n, 2) of finite strain; history: (3, 3, ne, nq) Pa."""
         fields = self._fields(u, self.theta(u), history)
         return internal_force(slopes).assemble(self.basis, **fields, a=factor)[self.numbers]
 
@@ -283,7 +324,11 @@ class WeakForm:
     def linear_stiffness(self, mu: np.ndarray, factor: float = 1.0) -> np.ndarray:
         """Tangent (2n, 2n) of small strain; mu: (ne,) Pa."""
         return self._numbered(
-            linear_shape.assemble(self.basis, mu=factor * mu[:, None] + 0 * self.basis.dx)
+            linear_shape.assemble(
+                self.basis,
+                mu=factor * mu[:, None] + 0 * self.basis.dx,
+                round=float(self.axisymmetric),
+            )
             + self._projected(linear_dilatation)
         )
 

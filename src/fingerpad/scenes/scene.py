@@ -49,7 +49,9 @@ from fingerpad.scenes.specimen import (
     Specimen,
     SpecimenFile,
     source_of,
+    turned,
 )
+from fingerpad.scenes.trouble import OnTrouble, Relaxing
 from fingerpad.stimuli.motion import (
     MAXIMUM_STEPS,
     Hold,
@@ -62,11 +64,24 @@ from fingerpad.stimuli.motion import (
     check_programme,
     end_time,
 )
-from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Line, Sampled, Stimulus, Wavy
+from fingerpad.stimuli.shapes import (
+    SHAPES,
+    Bar,
+    Cone,
+    Cylinder,
+    Flat,
+    Line,
+    Punch,
+    Sampled,
+    Sphere,
+    Stimulus,
+    Wavy,
+)
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
     "Bar",
+    "Cone",
     "Cylinder",
     "Discretisation",
     "Flat",
@@ -81,7 +96,9 @@ __all__ = [
     "PressToDepth",
     "PressToForce",
     "PronyTerm",
+    "Punch",
     "Receptors",
+    "Relaxing",
     "Sampled",
     "Scene",
     "SceneError",
@@ -89,6 +106,7 @@ __all__ = [
     "Slide",
     "Specimen",
     "SpecimenFile",
+    "Sphere",
     "StepAndRepeat",
     "Wavy",
     "load_scene",
@@ -274,6 +292,9 @@ Effects = Annotated[
 _Friction: Any = number("a coefficient of zero or more", 0.0, math.inf, low_included=True)
 
 
+Kinematics = Literal["plane_strain", "axisymmetric"]
+
+
 class Scene(Strict):
     """One simulation: something pressed on a fingerpad, what to record and how well.
 
@@ -291,10 +312,16 @@ class Scene(Strict):
     name: SkipJsonSchema[str]
     tags: SkipJsonSchema[dict[str, str]] = Field(default_factory=dict)
     """Family and place in it, of a scene that has one: {"family": "ramp40", "surface": "k210"}."""
+    kinematics: Kinematics = Field("plane_strain", exclude_if=lambda given: given == "plane_strain")
+    """What a section stands for: a body that goes on for ever across it, or one of revolution about
+    x = 0, whose forces are in newtons.
+    """
     specimen: Specimen
     """What is touched; parts left out are the thesis's."""
     stimulus: Stimulus
-    """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy."""
+    """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy; in a body of
+    revolution flat, sphere, punch, cone, sampled.
+    """
     friction: _Friction = 0.0
     """Coulomb coefficient of friction."""
     motion: Motion
@@ -305,6 +332,10 @@ class Scene(Strict):
     """draft, thesis, fine, a tolerance such as 0.02, or a mapping."""
     effects: Effects = Field(default_factory=dict)
     """auto, or switches for effects that the plan shall not decide."""
+    on_trouble: OnTrouble = Field("relax", exclude_if=lambda given: given == "relax")
+    """What a run does that breaks off, labours or doubts itself: relax what the plan chose, step by
+    step, or stop; a mapping says how far it may go.
+    """
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -315,6 +346,8 @@ class Scene(Strict):
             data["name"], data["tags"] = context.path.stem, context.tags
         data.setdefault("specimen", {})
         data.setdefault("outputs", {})
+        if data.get("kinematics") == "axisymmetric":
+            data["specimen"] = turned(data["specimen"])
         depths, outputs = _middles(data["specimen"], context), data["outputs"]
         receptors = outputs.get("receptors", {}) if isinstance(outputs, Mapping) else None
         if depths and isinstance(receptors, Mapping):
@@ -333,6 +366,11 @@ class Scene(Strict):
 
     @model_validator(mode="after")
     def _check(self) -> Scene:
+        if self.axisymmetric:
+            self._check_turned()
+        elif self.kinematics not in self.stimulus.kinematics:
+            problem = "is a body of revolution"
+            raise Problem(problem, "kinematics: axisymmetric beside it", ("stimulus", "shape"))
         try:
             check_programme(self.motion, self.stimulus.length)
         except Problem as problem:
@@ -352,6 +390,26 @@ class Scene(Strict):
                 allowed = f"up to {format_quantity(end, 'time')}"
                 raise Problem("is after the end of the motion", allowed, key)
         return self
+
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether it is a body of revolution."""
+        return self.kinematics == "axisymmetric"
+
+    def _check_turned(self) -> None:
+        """Refuses what no body of revolution is pressed by or does; mirrors a profile."""
+        if self.kinematics not in self.stimulus.kinematics:
+            known = [name for name, shape in SHAPES.items() if self.kinematics in shape.kinematics]
+            problem = f"is a {self.stimulus.shape}, which is no body of revolution"
+            raise Problem(problem, ", ".join(known), ("stimulus", "shape"))
+        for i, leg in enumerate(self.motion):
+            if leg.along or leg.fresh:
+                problem = "leaves the axis, and a body of revolution has no other place"
+                raise Problem(problem, "a press, a hold or a lift", ("motion", i, leg.key))
+        try:
+            object.__setattr__(self, "stimulus", self.stimulus.turned())
+        except Problem as problem:
+            raise problem.below("stimulus") from None
 
     def _times(self, every: float) -> tuple[float, ...]:
         """Multiples of an interval up to the end of the motion, s."""
@@ -408,6 +466,13 @@ class Scene(Strict):
     def once(self) -> bool:
         """Whether the scene is to be run once, whatever the run's own estimate of its error."""
         return self.by_hand.once
+
+    @property
+    def relaxing(self) -> Relaxing | None:
+        """How far a run in trouble may relax what the plan chose; None: it stops."""
+        if isinstance(self.on_trouble, Relaxing):
+            return self.on_trouble
+        return Relaxing() if self.on_trouble == "relax" else None
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.

@@ -828,3 +828,18 @@ class Specimen(Strict):
             problem = "plus one pitch is more than half of the section's width"
             allowed = f"less than {_mm(outline.half_width - inner.pitch)}"
             raise Problem(problem, allowed, ("ridges", "half_width"))
+
+
+def turned(specimen: Any) -> Any:
+    """The specimen, or what a document says of it, as a body of revolution: its forces are N, so of
+    a length of one metre.
+    """
+    key = "contact_length"
+    if isinstance(specimen, Specimen):
+        return specimen.model_copy(update={key: 1.0})
+    if not isinstance(specimen, Mapping):
+        return specimen  # which is said where it is read
+    if specimen.get(key) not in (None, 1.0):
+        problem = "is of plane strain: forces on a body of revolution are in newtons"
+        raise Problem(problem, f"no {key}", ("specimen", key), HIDE)
+    return {**specimen, key: SI(1.0)}

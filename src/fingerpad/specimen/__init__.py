@@ -6,6 +6,7 @@ from typing import Any
 
 from fingerpad.specimen.build import build_pad_mesh, count_nodes, size_of
 from fingerpad.specimen.files import read_pad_mesh, read_specimen_mesh, write_pad
+from fingerpad.specimen.halving import halved
 from fingerpad.specimen.layered import ridge_resolution
 from fingerpad.specimen.outline import OutlineCurve, OutlineError
 from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh, skin_chain
@@ -23,6 +24,7 @@ __all__ = [
     "build_pad_mesh",
     "count_nodes",
     "counted",
+    "halved",
     "mesh_for",
     "quality_of",
     "quality_table",
@@ -45,8 +47,8 @@ def counted(specimen: Any, size: MeshSize, ridges: Any) -> tuple[int, float]:
 
 
 def mesh_for(scene: Any, plan: Any) -> PadMesh:
-    """The mesh of a scene: the external mesh it names, or else its outline, slab or half-round
-    meshed as the plan says.
+    """The mesh of a scene: the external mesh it names, its edges halved as often as the plan says,
+    or else its outline, slab or half-round meshed as the plan says.
 
     Raises
     ------
@@ -55,7 +57,10 @@ def mesh_for(scene: Any, plan: Any) -> PadMesh:
     """
     specimen = scene.specimen
     if specimen.mesh is not None:
-        return read_specimen_mesh(specimen)
+        mesh = read_specimen_mesh(specimen, scene.axisymmetric)
+        for _ in range(plan.relaxed.halvings):
+            mesh = halved(mesh)
+        return mesh
     if specimen.stack is not None:
         return build_stack_mesh(specimen.stack, plan.mesh_size)
     ridges = plan.parts(scene).ridges

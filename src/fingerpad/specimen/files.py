@@ -259,7 +259,7 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     )
 
 
-def read_specimen_mesh(specimen) -> PadMesh:
+def read_specimen_mesh(specimen, turned: bool = False) -> PadMesh:
     """The mesh a scene's specimen names, its surfaces checked against the layers' names, both ways.
 
     Parameters
@@ -267,6 +267,8 @@ def read_specimen_mesh(specimen) -> PadMesh:
     specimen : fingerpad.scenes.specimen.Specimen
         Has `mesh`, `materials` (by name), `stated` (names of the layers the scene gives), `fixed`
         and `free`.
+    turned : bool
+        Whether it is turned about x = 0.
 
     Raises
     ------
@@ -283,7 +285,10 @@ def read_specimen_mesh(specimen) -> PadMesh:
             "specimen.layers must name each surface of the mesh"
         )
     _check_names(specimen.stated, mesh.regions, f"{specimen.mesh}: layer ", "surface")
-    return mesh
+    try:
+        return mesh.turned() if turned else mesh
+    except MeshError as error:
+        raise MeshError(f"{specimen.mesh}: {error}") from None
 
 
 def read_pad_mesh(

@@ -169,6 +169,33 @@ class PadMesh:
             self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True
         )
 
+    def turned(self) -> PadMesh:
+        """The mesh as the half x >= 0 of one that is turned about x = 0, where its edges are the
+        further curve "symmetry".
+
+        Raises
+        ------
+        MeshError : when it reaches beyond x = 0, or does not touch it.
+        """
+        if self.half:
+            return self
+        near, first = 1e-6 * np.ptp(self.points[:, 0]), float(self.points[:, 0].min())
+        if abs(first) > near:
+            raise MeshError(
+                f"begins at x = {first * 1e3:.4g} mm; a body of revolution needs a mesh of its "
+                "right half, which begins on its axis, x = 0"
+            )
+        points = self.points.copy()
+        points[np.abs(points[:, 0]) <= near, 0] = 0.0
+        on_axis, axis, curves = points[:, 0] == 0.0, [], {}
+        for name, facets in self.curves.items():
+            there = on_axis[facets[:, :2]].all(axis=1) & (name not in self.fixed)
+            axis.append(facets[there])
+            if len(facets[~there]):
+                curves[name] = facets[~there]
+        curves["symmetry"] = np.concatenate(axis)
+        return replace(self, points=points, curves=curves, half=True, symmetric=True)
+
     def elevated(self, solved: str | None = None) -> PadMesh:
         """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads
         for the element "Q2P1".

@@ -101,6 +101,12 @@ class Profile:
             np.zeros((0, 2)),
         )
 
+    def bend_over(self, half_width: float) -> float:
+        """Curvature (1/m) of the parabola that is as high as it ``half_width`` m beside its
+        middle.
+        """
+        return self.convexity
+
     def tangents(self) -> np.ndarray:
         """x (k,) m at which rounded edges begin."""
         return np.array(self.edges) - self.edge_radius * np.sign(self.edges)

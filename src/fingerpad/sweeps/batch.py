@@ -15,12 +15,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from fingerpad.healing import simulate
 from fingerpad.measures.kept import LazyMapping
 from fingerpad.measures.known import known
 from fingerpad.planning.plan import plan
 from fingerpad.results import states_found, write_history
 from fingerpad.scenes.scene import Scene, scene_of_record
-from fingerpad.simulation import simulate
 from fingerpad.sweeps.records import UNFINISHED, Writer
 
 MOST_DEATHS = 2

@@ -16,14 +16,14 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.accuracy.compare import FINEST, belief, looked_at, resized
 from cysyk1999.studies.common.documents import CONFIG
 from cysyk1999.studies.common.plans import finer
 from fingerpad import load_scene
+from fingerpad.healing import simulate
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Scene
-from fingerpad.simulation import simulate
 
 LEVELS = ("draft", 0.05, 0.02)
 """Accuracies that are asked for."""

@@ -18,17 +18,17 @@ import pandas as pd
 import xarray as xr
 import yaml
 
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.accuracy.compare import FINEST, QUANTITIES, belief, resized
 from cysyk1999.studies.accuracy.own import finer_own, write_own
 from cysyk1999.studies.accuracy.ridges import TRUTH
 from cysyk1999.studies.common.documents import CONFIG, FLAT, scene_of
 from cysyk1999.studies.common.meshes import pad_of
 from cysyk1999.studies.common.plans import OutOfTime, finer, time_limit
+from fingerpad.healing import simulate
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
-from fingerpad.simulation import simulate
 from fingerpad.specimen.files import write_pad
 from fingerpad.specimen.pad import all_over
 from fingerpad.specimen.ridges import wave_of

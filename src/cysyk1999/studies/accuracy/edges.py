@@ -19,14 +19,14 @@ import numpy as np
 import xarray as xr
 
 from cysyk1999.measures.errors import norm
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.accuracy.compare import DEPTHS, by_surface, looked_at
 from cysyk1999.studies.accuracy.run import EDGED
+from fingerpad.healing import simulate
 from fingerpad.mechanics import contact_points
 from fingerpad.planning.plan import plan
 from fingerpad.receptors.laws import rate_by_leg
 from fingerpad.scenes.scene import Scene
-from fingerpad.simulation import simulate
 from fingerpad.specimen.pad import MeshSize
 
 OUTPUTS = 40

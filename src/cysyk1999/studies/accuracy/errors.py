@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 from scipy.optimize import brentq
 
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.accuracy.compare import DEPTHS
 from cysyk1999.studies.accuracy.convergence import Limit, fitted_order, limits
 from cysyk1999.studies.accuracy.run import (

@@ -10,16 +10,19 @@ from cysyk1999.studies.accuracy.belief import OUTSIDE, accuracy_belief
 from cysyk1999.studies.accuracy.drawn import CLASSES, accuracy_drawn
 from cysyk1999.studies.accuracy.edges import accuracy_edges
 from cysyk1999.studies.accuracy.errors import accuracy_tables
+from cysyk1999.studies.accuracy.finer import MADE_FINER, accuracy_finer
 from cysyk1999.studies.accuracy.own import accuracy_own
 from cysyk1999.studies.accuracy.picture import accuracy_pictures
 from cysyk1999.studies.accuracy.ridges import SURFACES, accuracy_ridges
 from cysyk1999.studies.accuracy.run import EDGED, FAMILY, accuracy_sweep, sweeps
-from cysyk1999.studies.accuracy.shown import MADE_FINER, accuracy_finer, accuracy_shown
+from cysyk1999.studies.accuracy.shown import accuracy_shown
 from cysyk1999.studies.accuracy.strokes import (
     STROKED_OVER,
     accuracy_strokes,
     accuracy_strokes_table,
 )
+from cysyk1999.studies.accuracy.turned import accuracy_turned
+from cysyk1999.studies.accuracy.turned_drawn import PARTS, accuracy_turned_drawn
 
 BASE = FAMILY["210"]
 """The scene that most parts of the study vary."""
@@ -67,6 +70,7 @@ def accuracy(project: Project) -> Iterator[Job]:
         more = {"kind": [kind], **values}
         yield Job(accuracy_drawn, drawn, {"rows": [path]}, more, f"accuracy_drawn_{kind}", **LONG)
     yield project.joined("accuracy_drawn", "accuracy_drawn", [*rows.values()])
+    yield from _turned(project)
     yield from _shown(project)
     for table, pictures in PICTURES.items():
         made = {"pictures": project.pictures(pictures, "accuracy_")}
@@ -87,6 +91,20 @@ def _sweeps(project: Project) -> Iterator[Job]:
     names = ["accuracy", "accuracy_orders", "accuracy_planner", "presets"]
     values = project.values_of(*FAMILY.values())
     yield Job(accuracy_tables, read, {"tables": project.tables(names)}, values)
+
+
+def _turned(project: Project) -> Iterator[Job]:
+    """Bodies of revolution: the table of them that the planner reads, and whether runs know their
+    error.
+    """
+    rows, read = [project.result("accuracy/turned.csv")], project.reads(BASE)
+    made = {"rows": rows, "table": project.tables(["accuracy_turned_planner"])}
+    yield Job(accuracy_turned, read, made, **LONG)
+    drawn = [project.result(f"accuracy/turned/{k}.csv") for k in range(PARTS)]
+    for k, path in enumerate(drawn):
+        name, which = f"accuracy_turned_drawn_{k}", {"part": [str(k)]}
+        yield Job(accuracy_turned_drawn, read, {"rows": [path]}, which, name, **LONG)
+    yield project.joined("accuracy_turned_table", "accuracy_turned", drawn)
 
 
 def _shown(project: Project) -> Iterator[Job]:

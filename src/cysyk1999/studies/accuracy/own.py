@@ -17,14 +17,14 @@ import gmsh
 import pandas as pd
 import xarray as xr
 
-from cysyk1999.publishing.write import publish_table, write_frame
+from cysyk1999.publishing.tables import publish_table, write_frame
 from cysyk1999.studies.accuracy.belief import finest
 from cysyk1999.studies.accuracy.compare import difference, looked_at
 from cysyk1999.studies.common.documents import FLAT, cylinder, force
 from cysyk1999.studies.common.meshes import pad_of
 from fingerpad import load_scene
+from fingerpad.healing import simulate
 from fingerpad.scenes.scene import Scene
-from fingerpad.simulation import simulate
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.files import write_pad
 

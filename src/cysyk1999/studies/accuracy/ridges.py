@@ -15,14 +15,14 @@ from types import SimpleNamespace
 import numpy as np
 import xarray as xr
 
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.accuracy.compare import by_surface, resized
 from cysyk1999.studies.common.ridges import boundary
+from fingerpad.healing import simulate
 from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import PressToForce, Scene
-from fingerpad.simulation import simulate
 from fingerpad.specimen.pad import all_over
 from fingerpad.specimen.ridges import wave_of
 

@@ -19,29 +19,11 @@ from cysyk1999.figures.grammar import Figure
 from cysyk1999.figures.registry import FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
 from cysyk1999.measures.inputs import read_results
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.reference_data import read_reference
-from fingerpad import load_scene, plan, simulate
+from cysyk1999.studies.accuracy.finer import FINER
 from fingerpad.measures.features import Histories, Meshes
-from fingerpad.planning.plan import companion
-from fingerpad.results import write_history
 
-FINER = 0.5
-"""Edges of the finer runs over those of the scenes."""
-MADE_FINER = (
-    "stroke_",
-    "ramp40_",
-    "ramp150_",
-    "press10_",
-    "press15_",
-    "step_sub",
-    "plate_",
-    "ridged_stroke_",
-    "ridged_40_",
-)
-"""First letters of the scenes that are made finer: all of figures but chapter 3's and the
-homogeneous pad.
-"""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
 
 
@@ -108,19 +90,12 @@ def shown(
 _SERIES = ("panel", "surface", "series", "pad", "phase", "place", "convexity")
 
 
-def accuracy_finer(job: SimpleNamespace) -> None:
-    """Job: `scenes` -> `histories`."""
-    for scene, history in zip(map(load_scene, job.scenes), job.histories, strict=True):
-        write_history(simulate(scene, companion(scene, plan(scene), coarser=FINER)), history)
-        print(history, flush=True)
-
-
 def accuracy_shown(job: SimpleNamespace) -> None:
     """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `data` (CSV) of the
     figures `numbers`.
     """
     folder = Path(job.reference[0]).parent
     figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
-    results = read_results([*job.histories, *job.meshes, *job.coarse])
-    finer, reference = read_results(job.finer)[0], read_reference(job.reference[0])
+    results = read_results([*job.histories, *job.meshes, *job.coarse], True)
+    finer, reference = read_results(job.finer, True)[0], read_reference(job.reference[0])
     write_frame(shown(figures, results, finer, reference), Path(job.data[0]))

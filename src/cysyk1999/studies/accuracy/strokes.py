@@ -19,16 +19,16 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-from cysyk1999.publishing.write import publish_table, read_frame, write_frame
+from cysyk1999.publishing.tables import publish_table, read_frame, write_frame
 from cysyk1999.studies.accuracy.compare import difference
 from cysyk1999.studies.accuracy.drawn import DRAWN, SCENES
 from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, DEFAULT_STEPS
 from cysyk1999.studies.common.documents import FLAT, scene_of
+from fingerpad.healing import simulate
 from fingerpad.planning.errors import PLATES, WAVES
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Scene
-from fingerpad.simulation import simulate
 
 MESHES, STEPS = (2, 4, 7, 10, 14), (10, 20, 40)
 """Elements across the epidermis, with the default's steps of a leg; and steps of a leg, on the

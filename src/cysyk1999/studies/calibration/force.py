@@ -26,7 +26,7 @@ from scipy import stats
 from scipy.interpolate import PchipInterpolator
 
 from cysyk1999.measures.inputs import read_coarse, read_results
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.reference_data import read_force_depth
 from fingerpad.files import write_text
 

@@ -22,12 +22,12 @@ from scipy.interpolate import PchipInterpolator
 
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import DISTANCE, LATERAL
-from cysyk1999.publishing.write import without_round_off, write_frame
-from cysyk1999.reference_data import read_friction
+from cysyk1999.publishing.tables import without_round_off, write_frame
+from cysyk1999.reference_data import read_friction, read_reference
 from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS, estimate
 from fingerpad import load_scene, plan
+from fingerpad.healing import simulate
 from fingerpad.results import scene_of, write_history
-from fingerpad.simulation import simulate
 
 STROKE = "stroke_sub_10"
 STRETCH, AXIS = "T232", "T266"
@@ -306,7 +306,7 @@ def calibrate_friction_job(job: SimpleNamespace) -> None:
     friction_estimates.
     """
     histories, sweep = (read_results(paths)[0] for paths in (job.histories, job.sweep))
-    tables = pd.read_csv(job.thesis[0]), read_friction(job.published[0])
+    tables = read_reference(job.thesis[0]).reset_index(), read_friction(job.published[0])
     result = calibrate_friction(sweep.values(), histories, *tables)
     for path, frame in zip(job.data, result, strict=True):
         write_frame(without_round_off(frame), Path(path))

@@ -22,6 +22,7 @@ from cysyk1999.publishing.style import (
     INK,
     MARKERS,
     SOLID,
+    haloed,
     ordered,
     spread,
     study_figure,
@@ -59,13 +60,15 @@ def fit(frame: pd.DataFrame) -> Figure:
         "confidence), dashed: the moduli stated in the thesis. "
         f"Points: {'; '.join(measured['source'].unique())}."
     )
-    fig = study_figure("Calibration: steady force under a flat plate", [note], 3.4)
-    left, right = fig.subplots(1, 2, sharey=True)
     points = {who: rows[[DEPTH, FORCE]].T.to_numpy() for who, rows in measured.groupby("series")}
     curves = dict(
         list(frame[is_simulated(frame) & frame["panel"].eq("subjects")].groupby("series"))
     )
     looks = _looks(measured["series"].unique())
+    main = curves[list(looks)[-1]][FORCE].iloc[-1] / curves["thesis"][FORCE].iloc[-1]
+    title = f"Measured steady forces under a plate need {main:.2g} times the thesis's moduli"
+    fig = study_figure(title, [note], 3.4)
+    left, right = fig.subplots(1, 2, sharey=True)
     for who, look in looks.items():
         line, colour = curves[who], look["color"]
         # the ends as lines, for overlapping bands show seams that look like curves
@@ -74,11 +77,8 @@ def fit(frame: pd.DataFrame) -> Figure:
         left.plot(line[DEPTH], line[FORCE], color=colour, lw=1.8 if who == "mean" else 1.1)
         left.plot(*points[who], **look)
     stated = curves["thesis"]
-    left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=DASHED)
+    left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=DASHED, label="moduli of the thesis")
     top = max(1.6, 1.1 * float(measured[FORCE].max()))
-    inside = stated.loc[stated[FORCE] < 0.93 * top, [DEPTH, FORCE]].iloc[-1]
-    place = {"textcoords": "offset points", "ha": "right", "va": "center", "color": GREY}
-    left.annotate("moduli stated\nin the thesis", inside, (-4, 0), **place)
     left.set(ylabel="force (N)", ylim=(0, top), title="each subject, and the mean")
     left.legend(title="measured", loc="upper left", alignment="left")
     bone = frame[frame["panel"] == "bone"].groupby("series", sort=False)
@@ -102,7 +102,8 @@ def identifiability(frame: pd.DataFrame) -> Figure:
         "over the squared scatter of the fit. Along the valley nothing changes: force tells "
         "modulus × contact length, nothing of either alone."
     )
-    fig = study_figure("Calibration: what force can tell", [note], 3.7)
+    title = "Force tells the product of moduli and contact length, and nothing of either alone"
+    fig = study_figure(title, [note], 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
     panels = dict(list(frame.groupby("panel")))
     _valley(left, panels["ridge"].pivot(index=LENGTH, columns=CONSTANT, values=RISE))
@@ -159,23 +160,27 @@ def friction(frame: pd.DataFrame) -> Figure:
     """
     panels = dict(list(frame.groupby("panel")))
     note = (
-        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the "
+        "Simulated (the first two convexities, 27 gf, 10 mm/s). Blue: about 1 mm, the stretch the "
         "thesis states; dotted: the axis of its Fig. 5-15. Published coefficients were measured by "
         "others: sources in the CSV."
     )
-    fig = study_figure("Calibration: friction from the stretch of the skin", [note], 3.8)
+    about, axis = panels["stated"].to_dict("records")
+    (estimate,) = panels["estimate"].to_dict("records")
+    best = estimate[COEFFICIENT]
+    title = (
+        f"With a coefficient of friction of {best:.2g} the skin is stretched by "
+        f"{abs(about[LATERAL]):g} mm, as the thesis states"
+    )
+    fig = study_figure(title, [note], 3.8)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
     left, right = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
     below = fig.add_subplot(grid[1, 1], sharex=right)
-    about, axis = panels["stated"].to_dict("records")
     for ax in (left, right):
         ax.axhspan(about[LOWEST], about[HIGHEST], color=TOUCHED, lw=0, zorder=0)
         ax.axhline(about[LATERAL], color=CATEGORIES[0], lw=0.8, zorder=1)
         for end in (axis[LOWEST], axis[HIGHEST]):
             ax.axhline(end, color=GREY, lw=0.8, ls=(0, (1, 1.6)))
     _courses(left, panels["course"], panels["waves"][DISTANCE], (axis[LOWEST], axis[HIGHEST]))
-    (estimate,) = panels["estimate"].to_dict("records")
-    best = estimate[COEFFICIENT]
     _stretches(right, panels["stretch"], panels.get("variations", frame[:0])[:4])
     right.plot(best, estimate[LATERAL], "*", color=CATEGORIES[1], ms=8, zorder=4)
     _published(below, panels["published"])
@@ -193,7 +198,8 @@ def _courses(ax: Axes, rows: pd.DataFrame, waves: pd.Series, ends: tuple[float, 
     colours = mpl.colormaps["cividis"](np.linspace(0, 0.8, len(strokes)))
     for (name, course), place, colour in zip(strokes.items(), places, colours, strict=True):
         ax.plot(course[DISTANCE], course[LATERAL], color=colour, lw=1.0)
-        ax.text(course[DISTANCE].iloc[-1] + 0.8, place, name, fontsize=6.5, va="center")
+        at = course[DISTANCE].iloc[-1] + 0.8
+        ax.text(at, place, name, fontsize=6.5, va="center", **haloed())
     for x in waves:
         ax.axvline(x, color=GREY, lw=0.6)
     look = {"transform": ax.get_xaxis_transform(), "color": GREY, "fontsize": 6.5}
@@ -231,7 +237,8 @@ def _published(ax: Axes, rows: pd.DataFrame) -> None:
         ends = [row["lowest_coefficient (1)"], row["highest_coefficient (1)"]]
         ax.plot(ends, [k, k], color=INK, lw=2.2)
         ax.plot(row[COEFFICIENT], k, "o", color=INK, ms=4, mfc=INK if measured else "white")
-        ax.text(0.02, k, row["series"] if measured else "assumed in a model", **look)
+        words = row["series"] if measured else "assumed in a model"
+        ax.text(0.02, k, words, zorder=5, **look, **haloed())
     ax.set(xlabel="coefficient of friction (1)", xlim=(0, 1.12), title="published")
     ax.set(yticks=[], ylim=(-0.7, len(rows) - 0.3))
 

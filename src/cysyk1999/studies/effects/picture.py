@@ -23,7 +23,8 @@ from cysyk1999.publishing.style import (
     styled,
     wrapped,
 )
-from cysyk1999.publishing.write import publish, publish_table, write_frame
+from cysyk1999.publishing.tables import publish_table, write_frame
+from cysyk1999.publishing.write import publish
 from cysyk1999.studies.effects.run import FIELDS, REFINED, WRONG, evidence, rules_table
 from fingerpad.planning.effects import EFFECTS
 
@@ -131,7 +132,7 @@ def _changes(ax, rows: pd.DataFrame) -> None:
             12.8,
             place,
             f"{name}: {row['scene']}",
-            fontsize=5.6,
+            fontsize=6,
             va="center",
             color=INK,
             clip_on=False,

@@ -20,16 +20,16 @@ import pandas as pd
 import xarray as xr
 import yaml
 
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.common.documents import CONFIG, RAMP, cylinder, scene_of
 from cysyk1999.studies.common.plans import with_effects
+from fingerpad.healing import simulate
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.effect import OWN_PAIR
 from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES, Rules
 from fingerpad.scenes.scene import Scene
-from fingerpad.simulation import simulate
 
 ANSWERS = {
     "indentation_depth": "depth",

@@ -29,7 +29,7 @@ def explanations(project: Project) -> Iterator[Job]:
     words = {name: re.sub("[^a-z]+", "_", name) for name in (*READ_ONLY, *simulated)}
     data = {name: project.result(f"explanations/{word}.csv") for name, word in words.items()}
     known = {
-        "reference": [project.at("config/reference/thesis_numbers.csv")],
+        "reference": project.reference,
         "study": [project.at(FILE)],
     }
     read = known | {"histories": project.histories(project.measured)}

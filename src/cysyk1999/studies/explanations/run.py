@@ -23,17 +23,18 @@ import pandas as pd
 import xarray as xr
 import yaml
 
-from cysyk1999.claims.comparison import AGREES, score_of, thesis_comparison
+from cysyk1999.claims.comparison import AGREES, KINDS, judged_rows, thesis_comparison
+from cysyk1999.measures.energy_of_1999 import ELASTIC, as_of_1999
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.runs import FAST, NINE
 from cysyk1999.measures.table import Instead, Measures
-from cysyk1999.publishing.write import publish_table, write_frame
+from cysyk1999.publishing.tables import publish_table, write_frame
 from cysyk1999.reference_data import read_reference
 from cysyk1999.studies.common.documents import CONFIG
+from fingerpad.healing import simulate
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
 from fingerpad.results import ENERGIES
 from fingerpad.scenes.scene import Scene, Slide, load_scene
-from fingerpad.simulation import simulate
 
 PRESSED = (*NINE.scenes.values(), *FAST.scenes.values())
 STROKED = (*FULL.values(), *SUB.values(), STEPPED)
@@ -83,6 +84,7 @@ class Reading:
 
     def called(self, history: xr.Dataset) -> xr.Dataset:
         """A history of it with receptors and energy by the names that the measures ask for."""
+        history = history if ELASTIC in history else as_of_1999(history)
         return history.assign(
             {
                 "receptor_depth": history["receptor_depth"] - self.deeper,
@@ -182,31 +184,28 @@ def explanations(
     ]
     rest = (told & ~(gained & told)).to_numpy(bool)
     table["not_by"] = [", ".join(holds.columns[row]) for row in rest]
-    table.attrs["summary"] = _summary(scored, table, reference)
+    table.attrs["summary"] = _summary(scored, table)
     return table
 
 
-def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame) -> str:
-    names = {"axis": "axes", "trend": "trends"}
-    kinds = scored["id"].map(reference["form"]).map(names).fillna("values and ranges")
+def _summary(scored: pd.DataFrame, table: pd.DataFrame) -> str:
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
-    agrees = scored["verdict"].isin(AGREES)
     counts = [
-        f"{kind}: {(agrees & (kinds == kind)).sum()} of {(kinds == kind).sum()} right, "
-        f"{(explained & (kinds == kind)).sum()} more explained by a run"
-        for kind in ("values and ranges", "trends", "axes")
+        f"{kinds}: {scored['agrees'][of].sum()} of {of.sum()} right, "
+        f"{explained[of].sum()} more explained by a run"
+        for kinds, of in ((kinds, scored["kind"].eq(kind)) for kind, kinds in KINDS.items())
     ]
-    share = (agrees | explained)[kinds != "axes"].mean()
+    share = (scored["agrees"] | explained)[scored["kind"] != "axis"].mean()
     return (
-        f"**Held out, {'; '.join(counts)}.** Values, ranges and trends right or explained: "
+        f"**Held out, {'; '.join(counts)}.** Numbers, ranges and trends right or explained: "
         f"{share:.0%}."
     )
 
 
 def _held_out(published: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
     """The rows of a comparison that the pad was held out from, and that are judged."""
-    held_out = published["id"].map(reference.apply(score_of, axis=1)).eq("held out")
-    return published[held_out & published["verdict"].ne("not_comparable")]
+    rows = judged_rows(published, reference)
+    return rows[rows["score"].eq("held out")]
 
 
 def turned(
@@ -239,7 +238,7 @@ def explanation(job: SimpleNamespace) -> None:
 
 def explanations_read(job: SimpleNamespace) -> None:
     """Job: The readings `names` of all `histories`, the table `reference` -> `data`."""
-    histories, _, _ = read_results(job.histories)
+    histories, _, _ = read_results(job.histories, True)
     for name, data in zip(job.names, job.data, strict=True):
         write_frame(verdicts(histories, READINGS[name], job.reference[0]), Path(data))
 

@@ -28,7 +28,7 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.studies.common.meshes import split
 from cysyk1999.studies.common.plans import seconds_of_children
 from cysyk1999.studies.peers import with_felupe, with_ngsolve

@@ -58,7 +58,7 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
             continue
         common = _common_depths(matched)
         table = pd.DataFrame(
-            {"rates": title, "kind": kind(group), "candidate": name}
+            {"rates": title, "kind": kind(group, matched), "candidate": name}
             | row
             | _held(surfaces, name, row["receptor_depth (um)"])
             for name, unit, deep, number in _candidates()

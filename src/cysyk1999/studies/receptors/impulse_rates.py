@@ -1,8 +1,8 @@
 """Impulse rates at hand against simulated histories: which belong together, and Eq 5-1 asked for
 the rates.
 
-Rates are published or recorded (`cysyk1999.receptors.recordings`); histories are of cylinders
-pressed into a human pad.
+Rates are published or recorded (`cysyk1999.receptors.recordings`); histories are of cylinders, or
+of spheres where those were pressed, on a human pad.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from cysyk1999.measures.responses import (
     predicted_rate,
     windowed,
 )
-from cysyk1999.measures.runs import surfaces
+from cysyk1999.measures.runs import SPHERES, Runs, surfaces
 from cysyk1999.receptors.fits import GainAndThreshold, gain_and_threshold, jackknife, linear
 from fingerpad.measures.features import Histories, energy, force_gf
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
+from fingerpad.results import scene_of
 
 RATE_FITS = {
     "5-1, thesis's constants": {"mean of predicted less given": "impulses/s"},
@@ -78,13 +79,14 @@ def matched_histories(
     """Histories of pressed surfaces for every force (gf) of a set of rates, by rising curvature;
     None if a force has fewer than four.
 
-    Of several force rates the recording's is taken, else 40 gf/s.
+    Spheres stand for spheres where they are simulated, else cylinders do. Of several force rates
+    the recording's is taken, else 40 gf/s.
     """
     found = {}
     for force, rows in group.groupby("force_gf"):
         ramp = rows["ramp_gf_per_s"].fillna(40).iloc[0]
-        for programme in (f"ramp{ramp:g}", f"press{force:g}"):
-            pressed = surfaces(programme).histories(histories).values()
+        for runs in _programmes(rows, force, ramp):
+            pressed = runs.histories(histories).values()
             chosen = [h for h in pressed if abs(float(force_gf(h)[-1]) / force - 1) < 0.01]
             if len(chosen) >= 4:
                 found[force] = sorted(chosen, key=curvature_of)
@@ -92,6 +94,13 @@ def matched_histories(
         else:
             return None
     return found
+
+
+def _programmes(rows: pd.DataFrame, force: float, ramp: float) -> Iterator[Runs]:
+    """Runs that may stand for rates at a force (gf), the closest to what was pressed first."""
+    if rows["stimulus"].eq("sphere").any() and force in SPHERES:
+        yield SPHERES[force]
+    yield from map(surfaces, (f"ramp{ramp:g}", f"press{force:g}"))
 
 
 def across(
@@ -162,7 +171,10 @@ def rate_fit(
     return dict(zip(RATE_FITS, zip(constants, predicted, strict=True), strict=True))
 
 
-def kind(group: pd.DataFrame) -> str:
+def kind(group: pd.DataFrame, matched: Mapping[float, Sequence[xr.Dataset]]) -> str:
     """Whose rates of which stimuli they are, and what is simulated."""
     species, stimuli = ("/".join(group[name].unique()) for name in ("species", "stimulus"))
-    return f"{species}, {stimuli}; simulated: cylinders on a human pad"
+    scenes = [scene_of(history) for histories in matched.values() for history in histories]
+    is_round = all(scene.kinematics == "axisymmetric" for scene in scenes)
+    ours = "spheres on a human pad of revolution" if is_round else "cylinders on a human pad"
+    return f"{species}, {stimuli}; simulated: {ours}"

@@ -8,7 +8,7 @@ from cysyk1999.job import Job, part
 from cysyk1999.project import Project
 from cysyk1999.studies.receptors.run import TABLES, receptor_tables
 
-FELT = ("ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
+FELT = ("ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub", "spheres")
 """Families of scenes whose rates are predicted."""
 
 

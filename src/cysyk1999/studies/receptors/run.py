@@ -31,8 +31,11 @@ from cysyk1999.measures.responses import (
     strokes,
 )
 from cysyk1999.measures.runs import FAST, NINE
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.tables import publish_table
 from cysyk1999.receptors.fits import (
+    EQ_4_4,
+    PRESSURE_ONLY,
+    SQUARE,
     SkinSample,
     constant_shift,
     jackknife,
@@ -51,7 +54,7 @@ from cysyk1999.studies.receptors.impulse_rates import (
     rate_sets,
 )
 from cysyk1999.studies.receptors.sensing import sensor_accuracy
-from fingerpad.measures.features import Histories, scene_name
+from fingerpad.measures.features import Histories, ramp_end, scene_name
 from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
 
@@ -190,29 +193,35 @@ def _node_laws(surfaces: dict[str, xr.Dataset]) -> Iterator[dict]:
 
 
 WHAT = "residual over the energy"
+WITHOUT, OF_SQUARE = "4-4 without depth of indentation", "square of the weighted pressure"
+SYMBOLS = {"constant": ("A2", "1/m"), "per_depth": ("A1", "1/m2"), "square": ("A", "1/(Pa m2)")}
 
 
 def _sums(histories: Histories, surfaces: dict[str, xr.Dataset]) -> Iterator[dict]:
     where, note = f"ramp40, {len(surfaces)} surfaces", "intervals over surfaces"
-    for depth, with_depth in [*((z, True) for z in DEPTHS), (RECEPTOR_DEPTH, False)]:
+    cases = [("4-4", EQ_4_4, z) for z in DEPTHS] + [(WITHOUT, PRESSURE_ONLY, RECEPTOR_DEPTH)]
+    for title, names, depth in [*cases, *((OF_SQUARE, SQUARE, z) for z in DEPTHS)]:
         samples = [skin_sample(history, depth) for history in surfaces.values()]
-        units = {"r": "mm", "A2": "1/m"} | ({"A1": "1/m2"} if with_depth else {})
+        units = {"r": "mm"} | {SYMBOLS[name][0]: SYMBOLS[name][1] for name in names}
 
-        def constants(chosen, with_depth=with_depth):
-            law = spatial_sum(chosen, with_depth)
-            return [law.r * 1e3, law.constant, law.per_depth][: 2 + with_depth]
+        def constants(chosen, names=names):
+            law = spatial_sum(chosen, names)
+            return [law.r * 1e3, *(getattr(law, name) for name in names)]
 
         found = jackknife(constants, samples)
-        law = SpatialSum(found[0, 0] * 1e-3, found[2, 0] if with_depth else 0.0, found[1, 0])
-        title = "4-4" if with_depth else "4-4 without depth of indentation"
+        r, *values = found[:, 0].tolist()
+        law = SpatialSum(r * 1e-3, **dict(zip(names, values, strict=True)))
         left = _energies(law, samples)
         yield from _constants(title, where, units, found, left, note, depth)
         if abs(depth - RECEPTOR_DEPTH) > 1e-9:
             continue
-        for label, sample in zip(surfaces, samples, strict=True):
-            name = f"{WHAT}, K = {label}"
-            yield _relative(title, where, name, _energies(law, [sample]), depth=depth)
-        if with_depth:
+        for (label, history), sample in zip(surfaces.items(), samples, strict=True):
+            of = _energies(law, [sample])
+            simulated, fall = (100 * (1 - e[-1] / e[ramp_end(history)]) for e in of)
+            yield _relative(title, where, f"{WHAT}, K = {label}", of, depth=depth)
+            told = f"simulated: {simulated:.1f} %"
+            yield _row(title, where, f"fall in the hold, K = {label}", fall, "%", told, depth)
+        if title == "4-4":
             yield from _transferred(law, histories, depth)
 
 
@@ -305,7 +314,7 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
         data = group["rate_per_s"].to_numpy(float)
         for way, units in RATE_FITS.items():
             found, predicted = readings[0][way]
-            note = f"{len(data)} rates; {kind(group)}"
+            note = f"{len(data)} rates; {kind(group, matched)}"
             if len(readings) > 1:
                 shares = [r_squared(data, reading[way][1]) for reading in readings]
                 note += (
@@ -324,7 +333,8 @@ TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")
 def receptor_tables(job: SimpleNamespace) -> None:
     """Job: `rates`, `histories`, `coarse` -> `tables`."""
     rates = read_rates(*job.rates)
-    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
+    histories = read_results(job.histories, True)[0]
+    coarse = read_coarse(job.coarse, True)
     tables = {
         "receptor_fits": lambda: receptor_fits(histories, coarse, rates),
         "candidate_stimuli": lambda: candidate_stimuli(histories, rates),

@@ -16,7 +16,7 @@ from cysyk1999.measures.responses import (
     strokes,
 )
 from cysyk1999.measures.runs import FAST, LOWER, NINE
-from cysyk1999.receptors.fits import SkinSample, constant_shift
+from cysyk1999.receptors.fits import EQ_4_4, PRESSURE_ONLY, SQUARE, SkinSample, constant_shift
 from cysyk1999.receptors.sensor import TactileSensor, taxel_pressure
 from fingerpad.measures.features import Histories
 from fingerpad.receptors.laws import THESIS_RATE, SpatialSum
@@ -52,8 +52,8 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
             "the sensor's constants are fitted to scenes ramp40_*; there is none among the "
             "histories"
         )
-    with_depth, without = (
-        fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=known) for known in (True, False)
+    with_depth, without, square = (
+        fit_sum(surfaces.values(), RECEPTOR_DEPTH, law) for law in (EQ_4_4, PRESSURE_ONLY, SQUARE)
     )
     chosen = {
         runs[k]: history
@@ -74,6 +74,7 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
         arrays = [
             ("pressure and indentation", spacing, _at_nodes(sample, time, with_depth)),
             ("pressure", spacing, _at_nodes(sample, time, without)),
+            ("pressure, its sum squared", spacing, _at_nodes(sample, time, square)),
             *(("pressure", pitch, _on_array(sample, time, without, pitch)) for pitch in PITCHES),
         ]
         if is_stroke(history) and shift is not None:

@@ -18,15 +18,19 @@ from types import SimpleNamespace
 
 import pandas as pd
 
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.unknowns import Unknowns, read_unknowns
 from fingerpad.sweeps.records import Writer, read_records
 
-FITTED = ("flat", "158", "420", "1260", pads.PLATE)
-"""Surfaces that the posterior is made of: every second cylinder but one, so that the others are
-left to judge it by.
-"""
+FITTED = (
+    pads.PLATE,
+    *pads.SURFACES,
+    *(f"{k}{pads.FAST}" for k in ("flat", "158", "1260")),
+    pads.STROKED_PLATE,
+    pads.WAVY,
+)
+"""Surfaces that the evidence is read of."""
 UNKNOWNS = Path("config/reconstruction/unknowns.yaml")
 
 
@@ -64,7 +68,8 @@ def table(records: Path) -> pd.DataFrame:
     time.
     """
     rows = [
-        {"pad": r["number"], **r["pad"], **r["values"]} | {k: r[k] for k in ("diagnosis", "cpu_s")}
+        {"pad": r["number"], **r["pad"], **pads.with_plane_stress(r["pad"], r["values"])}
+        | {k: r[k] for k in ("diagnosis", "cpu_s")}
         for r in read_records(records)
     ]
     return pd.DataFrame(rows).sort_values("pad", ignore_index=True)

@@ -3,8 +3,8 @@
 A row of ``config/reference/reconstruction_evidence.csv`` is an interval that the figure or text
 leaves to a number: of an axis, for example, from its last tick but one to its end, where a program
 that ends axes at the next tick has drawn it. A number inside is as good as another; beyond an end
-it counts by its distance in tolerances. Rows are fitted, held out (half of chapter 4: the surfaces
-and figures that the posterior does not see), or apart (energies inside the epidermis).
+it counts by its distance in tolerances. The rows are two halves, by the parity of their figures'
+numbers, so that each half can be judged by what the other one says.
 """
 
 from __future__ import annotations
@@ -21,7 +21,12 @@ from cysyk1999.reference_data import NUMBER, POSITIVE, TEXT, ReferenceDataError,
 from cysyk1999.studies.reconstruction import pads
 
 EVIDENCE = Path("config/reference/reconstruction_evidence.csv")
-ROLES = ("fitted", "held_out", "apart")
+HALVES = ("odd", "even")
+"""Of the evidence, by the number of the figure: all rows of a figure are in one."""
+CHAPTERS = ("chapter 4", "sections 5.1 to 5.4", "section 5.5")
+"""Parts of the thesis that may each have a definition of the strain energy of its own."""
+RIDGES = 25
+"""Number of the first figure of section 5.5."""
 FAMILIES = (
     "plate",
     "depth",
@@ -30,22 +35,26 @@ FAMILIES = (
     "time course",
     "dermal energy",
     "epidermal energy",
+    "stroke",
 )
 SEEN = 1.02
 """Least ratio of a pressure to another by which a picture tells that it is larger."""
-SURFACES = (pads.PLATE, *pads.SURFACES, *(f"{k}{pads.FAST}" for k in pads.SURFACES))
+SURFACES = (
+    *(pads.PLATE, pads.WAVY, pads.STROKED_PLATE),
+    *pads.SURFACES,
+    *(f"{k}{pads.FAST}" for k in pads.SURFACES),
+)
 COLUMNS = {
     "id": TEXT,
     "figure": TEXT,
     "page": POSITIVE,
     "surface": one_of(*SURFACES),
-    "measure": one_of(*pads.MEASURES, *pads.FORCES),
+    "measure": one_of(*pads.MEASURES, *pads.FORCES, *pads.STROKED, *pads.STROKED_FLAT),
     "factor": POSITIVE,
     "low": NUMBER,
     "high": NUMBER,
     "unit": one_of("N", "mm", "Pa", "Pa/s", "1"),
     "tolerance": POSITIVE,
-    "role": one_of(*ROLES),
     "family": one_of(*FAMILIES),
     "reading": TEXT,
     "thesis_ids": TEXT,
@@ -99,18 +108,45 @@ class Evidence:
     @cached_property
     def _numbers(self) -> dict[str, np.ndarray]:
         """Columns as arrays: many small predictions are judged."""
-        columns = ("low", "high", "tolerance", "factor", "unit")
-        return {name: self.rows[name].to_numpy() for name in columns}
+        unit = self.rows["unit"]
+        columns = ("low", "high", "tolerance", "factor")
+        energy = self.rows["measure"].str.startswith("energy")
+        kinds = {"scaled": ~unit.isin(pads.SCALE_FREE), "force": unit == "N", "energy": energy}
+        kinds["late"] = energy & self.chapters.isin(CHAPTERS[1:])
+        return {k: self.rows[k].to_numpy() for k in columns} | {
+            k: v.to_numpy() for k, v in kinds.items()
+        }
 
-    def of_role(self, *roles: str) -> Evidence:
-        """The rows of some roles."""
-        return Evidence(self.rows[self.rows["role"].isin(roles)].reset_index(drop=True))
+    @cached_property
+    def halves(self) -> pd.Series:
+        """Which half (rows,) each row is of."""
+        odd = self.rows["figure"].str.split("-").str[1].astype(int) % 2 == 1
+        return odd.map({True: HALVES[0], False: HALVES[1]})
+
+    def of(self, half: str) -> Evidence:
+        """The rows of one half; all of them for any other word."""
+        rows = self.rows[self.halves == half] if half in HALVES else self.rows
+        return Evidence(rows.reset_index(drop=True))
+
+    @cached_property
+    def chapters(self) -> pd.Series:
+        """Which of `CHAPTERS` each row (rows,) is of; empty for chapter 3."""
+        chapter, number = (self.rows["figure"].str.split("-").str[k].astype(int) for k in (0, 1))
+        cases = [chapter == 4, (chapter == 5) & (number < RIDGES), chapter == 5]
+        return pd.Series(np.select(cases, CHAPTERS, ""), self.rows.index)
+
+    def defined(self, definitions: Mapping[str, str]) -> Evidence:
+        """The same with energies by other definitions (`pads.DEFINITIONS`), by chapter."""
+        measure = self.rows["measure"]
+        energy = measure.str.startswith(("energy", "falls"))
+        ending = self.chapters.map(definitions).fillna("").where(energy, "")
+        return Evidence(self.rows.assign(measure=measure + ending))
 
     def values(self, simulated: Mapping[str, float]) -> np.ndarray:
         """Simulated numbers (rows,) by the rows' keys; NaN for what was not simulated."""
         return np.array([simulated.get(key, np.nan) for key in self.keys])
 
-    def shown(self, values: np.ndarray, soft, plate_length) -> np.ndarray:
+    def shown(self, values: np.ndarray, soft, plate_length, energy=1.0, late=1.0) -> np.ndarray:
         """What the thesis would show.
 
         Parameters
@@ -118,15 +154,18 @@ class Evidence:
         values : (..., rows) as simulated, of `keys`.
         soft : (...) factor on all moduli.
         plate_length : (...) mm, of chapter 3.
+        energy, late : (...) factors on strain energies, and on those of chapter 5 beside.
 
         Returns
         -------
         (..., rows) in the rows' units.
         """
-        soft, length = (np.asarray(number, float)[..., None] for number in (soft, plate_length))
-        unit, factor = self._numbers["unit"], self._numbers["factor"]
-        scale = np.where(np.isin(unit, pads.SCALE_FREE), 1.0, soft)
-        return values * (factor * scale * np.where(unit == "N", 1e-3 * length, 1.0))
+        factors = {"scaled": soft, "force": 1e-3 * plate_length, "energy": energy, "late": late}
+        scale = self._numbers["factor"]
+        for kind, factor in factors.items():
+            factor = np.asarray(factor, float)[..., None]
+            scale = scale * np.where(self._numbers[kind], factor, 1.0)
+        return values * scale
 
     def departure(self, shown: np.ndarray, deviation: np.ndarray | float = 0.0) -> np.ndarray:
         """Distance (..., rows) outside the interval in standard deviations, 0 inside; `deviation`:
@@ -149,9 +188,9 @@ class Evidence:
         """
         rows, least, width = self.rows, self.rows["low"], self.rows["high"] - self.rows["low"]
         low = np.floor((shown - least) / width) * width + least
-        bounded, course = least == 0, rows["family"] == "time course"
-        ratio = course & (rows["unit"] == "1") & rows["measure"].str.contains("over")
-        cases = [ratio & (shown > SEEN), ratio, course & (shown > 0), course, bounded]
-        low = np.select(cases, [SEEN, 0.0, 0.0, -1.0, 0.0], low)
-        high = np.select(cases, [2.0, SEEN, 1.0, 0.0, np.maximum(1.3 * shown, 1e-9)], low + width)
+        over, falls, late = (rows["measure"].str.contains(k) for k in ("over", "falls", "late"))
+        cases = [over & (shown > SEEN), over, falls & (shown > 1), falls, late & (shown > 0), late]
+        low = np.select([*cases, least == 0], [SEEN, 0, 1, 0, 0, -1, 0], low)
+        above = np.maximum(1.3 * shown, 1e-9)
+        high = np.select([*cases, least == 0], [2, SEEN, 2, 1, 1, 0, above], low + width)
         return Evidence(rows.assign(low=low, high=high))

@@ -1,10 +1,5 @@
-"""From evidence to pads: posterior and evidence of each reading of the moduli, by importance
-sampling from the prior.
-
-The emulator costs microseconds a pad, and the evidence is made of intervals: of a hundred thousand
-pads of the prior, drawn evenly (scrambled Sobol points), hundreds to thousands are left. No chain
-can then fail to mix: the evidence of a reading is the mean likelihood (its error from the scatter),
-the posterior the pads resampled by it.
+"""From evidence to pads: posterior and evidence of each reading of the moduli, by nested sampling
+(Skilling 2006, Bayesian Anal. 1:833; dynesty, Speagle 2020, MNRAS 493:3132).
 
 A reading has its own unknowns: those of the file, and the factors on the moduli that it leaves
 free. The likelihood of a pad is ``exp(-d/2)``, d the sum of squared departures from the evidence
@@ -14,28 +9,34 @@ same rows, so that their evidences compare.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import dynesty
 import numpy as np
 import pandas as pd
-from scipy.stats import qmc
 
 from cysyk1999.studies.reconstruction.emulator import Emulator
 from cysyk1999.studies.reconstruction.evidence import Evidence
 from cysyk1999.studies.reconstruction.unknowns import (
+    BULK,
+    ENERGY,
     EPIDERMIS,
+    EPIDERMIS_BULK,
     LOAD,
     SCALED,
     SOFT,
     STIFFNESS,
+    STROKE_ENERGY,
     Unknown,
     Unknowns,
 )
 
-DRAWS, BLOCK = 2**17, 2**14
-"""Pads drawn from the prior of each reading; how many the emulator predicts at once."""
+LIVE, LEFT = 100, 0.2
+"""Live points; the share of the evidence, in its logarithm, that may be left in them at the end."""
+IMPOSSIBLE = -1e10
+"""Logarithm of the likelihood of a pad without room for its bone."""
 SAMPLES = 1000
 """Pads of a posterior."""
 LEAST_ROOM = 0.05
@@ -67,7 +68,8 @@ class Problem:
     def free(self) -> dict[str, Unknown]:
         """Priors of what the reading leaves free, in the order of a sample."""
         reading = self.known.readings[self.reading]
-        unknowns = {k: u for k, u in self.known.unknowns.items() if k not in reading.fixed}
+        given = {EPIDERMIS_BULK, *reading.fixed}
+        unknowns = {k: u for k, u in self.known.unknowns.items() if k not in given}
         return unknowns | reading.free
 
     def at(self, share: np.ndarray) -> np.ndarray:
@@ -80,25 +82,36 @@ class Problem:
         for name, value in self.known.readings[self.reading].fixed.items():
             pad[name] = np.full_like(pad[SCALED], value)
         pad.setdefault(EPIDERMIS, pad[SOFT])
+        pad.setdefault(EPIDERMIS_BULK, pad[BULK])
+        for factor in (ENERGY, STROKE_ENERGY):
+            pad.setdefault(factor, np.ones_like(pad[SCALED]))
         return pad | {LOAD: pad[SCALED] / pad[SOFT], STIFFNESS: pad[EPIDERMIS] / pad[SOFT]}
 
     def shown(self, values: np.ndarray) -> np.ndarray:
         """What the thesis would show (n, rows) of pads (n, names)."""
-        pad = self.pad(np.atleast_2d(values))
-        simulated = self.emulator(self.known.to_unit(pad))
-        return self.evidence.shown(simulated, pad[SOFT], pad["plate_length"])
+        return self._shown(self.pad(np.atleast_2d(values)))[0]
+
+    def _shown(self, pad: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """What the thesis would show (n, rows) of pads, and their shares of the design's ranges."""
+        shares = self.known.to_unit(pad)
+        factors = pad["plate_length"], pad[ENERGY], pad[STROKE_ENERGY]
+        shown = self.evidence.shown(self.emulator(shares), pad[SOFT], *factors)
+        return shown, shares
 
     def log_likelihood(self, values: np.ndarray) -> np.ndarray:
         """(n,) of pads (n, names)."""
-        shown = self.shown(values)
+        shown, shares = self._shown(self.pad(values))
         departure = self.evidence.departure(shown, self.emulator.deviation(shown))
-        return np.where(self.possible(values), -0.5 * (departure**2).sum(axis=-1), -np.inf)
+        return np.where(self._fits(shares), -0.5 * (departure**2).sum(axis=-1), IMPOSSIBLE)
 
     def possible(self, values: np.ndarray) -> np.ndarray:
         """(n,) which of pads (n, names) have room for their bone."""
+        return self._fits(self.known.to_unit(self.pad(values)))
+
+    def _fits(self, shares: np.ndarray) -> np.ndarray:
         if self.room is None:
-            return np.ones(len(values), bool)
-        return self.room(self.known.to_unit(self.pad(values)))[:, 0] > LEAST_ROOM
+            return np.ones(len(shares), bool)
+        return self.room(shares)[:, 0] > LEAST_ROOM
 
 
 @dataclass(frozen=True)
@@ -124,10 +137,8 @@ class Posterior:
         """A row a quantity: median, interval, and the value of the best pad."""
         pad, best = self.problem.pad(self.samples), self.problem.pad(self.best[None])
         unknowns = self.problem.known.unknowns
-        units = {name: unknown.unit for name, unknown in unknowns.items()} | {
-            SOFT: "1",
-            EPIDERMIS: "1",
-        }
+        units = {name: unknown.unit for name, unknown in unknowns.items()}
+        units |= dict.fromkeys((SOFT, EPIDERMIS, EPIDERMIS_BULK, ENERGY, STROKE_ENERGY), "1")
         low, median, high = np.quantile([pad[k] for k in units], [TAILS[0], 0.5, TAILS[1]], axis=1)
         return pd.DataFrame(
             {
@@ -142,20 +153,26 @@ class Posterior:
         )
 
 
-def infer(problem: Problem, draws: int = DRAWS, seed: int = 1999) -> Posterior:
-    """Importance sampling of a problem; `draws` is a power of two."""
+def infer(problem: Problem, live: int = LIVE, seed: int = 1999) -> Posterior:
+    """Nested sampling of a problem with so many live points."""
     rng = np.random.default_rng(seed)
-    values = problem.at(qmc.Sobol(len(problem.free), rng=rng).random(draws))
-    blocks = np.split(values, range(BLOCK, draws, BLOCK))
-    log = np.concatenate([problem.log_likelihood(block) for block in blocks])
-    weight = np.exp(log - log.max())
-    mean = weight.mean()
-    samples = values[rng.choice(draws, size=SAMPLES, p=weight / weight.sum())]
-    best = values[np.argmax(log)]
+    sampler = dynesty.NestedSampler(
+        lambda values: float(problem.log_likelihood(values[None])[0]),
+        problem.at,
+        len(problem.free),
+        nlive=live,
+        sample="rwalk",
+        rstate=rng,
+    )
+    sampler.run_nested(dlogz=LEFT, print_progress=False)
+    found = sampler.results
+    best = found.samples[np.argmax(found.logl)]
     distance = float(problem.evidence.distance(problem.shown(best))[0])
-    # the error is that of independent draws: Sobol points do better
-    error = float(weight.std() / mean / np.sqrt(draws))
-    return Posterior(problem, samples, float(log.max() + np.log(mean)), error, best, distance)
+    drawn = found.samples_equal(rstate=rng)
+    samples = drawn[rng.permutation(len(drawn))[:SAMPLES]]
+    return Posterior(
+        problem, samples, float(found.logz[-1]), float(found.logzerr[-1]), best, distance
+    )
 
 
 def probabilities(log_evidence: pd.Series) -> pd.Series:
@@ -164,24 +181,7 @@ def probabilities(log_evidence: pd.Series) -> pd.Series:
     return weight / weight.sum()
 
 
-def evidences(posteriors: Iterable[Posterior]) -> pd.DataFrame:
-    """A row a reading: its evidence, and its probability among these."""
-    rows = [
-        {
-            "reading": p.problem.reading,
-            "says": p.problem.known.readings[p.problem.reading].says,
-            "log evidence (1)": p.log_evidence,
-            "its error (1)": p.error,
-            "least distance (1)": p.least_distance,
-        }
-        for p in posteriors
-    ]
-    table = pd.DataFrame(rows)
-    table.insert(4, "probability (1)", probabilities(table["log evidence (1)"]))
-    return table
-
-
-def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -> pd.DataFrame:
+def recovery(problem: Problem, trials: int, seed: int = 7, live: int = LIVE) -> pd.DataFrame:
     """Whether known pads are found again from the evidence that they would have left.
 
     Pads are drawn from the prior; what they show is read as the thesis is, between ticks. A row a
@@ -194,7 +194,7 @@ def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -
         shown = problem.shown(truth)[0]
         error = problem.emulator.deviation(shown) * rng.normal(size=len(shown))
         left = replace(problem, evidence=problem.evidence.as_thesis(shown + error))
-        low, high = np.quantile(infer(left, draws, seed + trial).samples, TAILS, axis=0)
+        low, high = np.quantile(infer(left, live, seed + trial).samples, TAILS, axis=0)
         table = {"trial": trial, "quantity": list(problem.free), "truth": truth}
         table |= {"low 5 %": low, "high 95 %": high, "covered": (low <= truth) & (truth <= high)}
         tables.append(pd.DataFrame(table))

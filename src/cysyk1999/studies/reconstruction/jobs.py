@@ -6,12 +6,14 @@ from collections.abc import Iterator
 
 from cysyk1999.job import Job, part
 from cysyk1999.project import Project
+from cysyk1999.publishing.write import draw_study
 from cysyk1999.studies.reconstruction.design import reconstruction_design
-from cysyk1999.studies.reconstruction.epidermis import reconstruction_epidermis
 from cysyk1999.studies.reconstruction.picture import reconstruction_pictures
 from cysyk1999.studies.reconstruction.run import reconstruction_inference
+from cysyk1999.studies.reconstruction.ways import reconstruction_ways
 
-TABLES = ("posterior", "readings", "emulator", "recovery", "families")
+DRAWN_APART = "cysyk1999.studies.reconstruction.shares"
+TABLES = ("posterior", "readings", "energies", "emulator", "recovery", "families")
 
 
 @part("reconstruction")
@@ -23,7 +25,7 @@ def reconstruction(project: Project) -> Iterator[Job]:
     unknowns = {"unknowns": [project.at("config/reconstruction/unknowns.yaml")]}
     start = {"files": [project.at("config/specimens/long_term.yaml")]}
     records = {"records": [project.result("reconstruction/design.jsonl")]}
-    design = {"design": [f"{project.config.studies}/reconstruction_design.csv"]}
+    design = {"design": [project.result("reconstruction/design.csv")]}
     long = {"runtime": 180, "mem_mb": 2000}
     yield Job(reconstruction_design, unknowns | start, design, records, **long)
     tables = project.tables(f"reconstruction_{name}" for name in TABLES)
@@ -35,9 +37,12 @@ def reconstruction(project: Project) -> Iterator[Job]:
         "specimen": [project.result("reconstruction/thesis.yaml")],
     }
     yield Job(reconstruction_inference, unknowns | start | evidence | design, made, **long)
-    read = evidence | start | {"posterior": tables[:1]}
-    made = {"table": project.tables(["reconstruction_epidermis"])}
-    yield Job(reconstruction_epidermis, read, made, **long)
+    pad = {"files": [project.at("config/specimens/thesis.yaml")]}
+    shares = {"data": [project.result("reconstruction/shares.csv")]}
+    made = {"table": project.tables(["reconstruction_ways"])} | shares
+    yield Job(reconstruction_ways, evidence | pad, made, **long)
+    made, module = {"pictures": project.pictures(["shares"], "reconstruction_")}, DRAWN_APART
+    yield Job(draw_study, shares, made, {"study": [module]}, "reconstruction_shares", (module,))
     read = unknowns | evidence | {"parts": parts[:2], "readings": tables[1:2]}
     made = {"pictures": project.pictures(["posterior", "evidence"], "reconstruction_")}
     yield Job(reconstruction_pictures, read, made)

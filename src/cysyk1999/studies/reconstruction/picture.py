@@ -22,10 +22,11 @@ from cysyk1999.publishing.style import (
 )
 from cysyk1999.publishing.write import publish
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence, read_evidence
-from cysyk1999.studies.reconstruction.run import CHOSEN, SHOWN
+from cysyk1999.studies.reconstruction.evidence import FAMILIES, HALVES, Evidence, read_evidence
+from cysyk1999.studies.reconstruction.run import HERE, SHOWN
 from cysyk1999.studies.reconstruction.specimen import most_probable
 from cysyk1999.studies.reconstruction.unknowns import (
+    BULK,
     EPIDERMIS,
     SCALED,
     SOFT,
@@ -35,10 +36,10 @@ from cysyk1999.studies.reconstruction.unknowns import (
 
 LABELS = {
     SCALED: "line load\n(N/m)",
-    "plate_length": "plate length\n(mm)",
     "apex_radius": "apex radius\n(mm)",
     "fat_thickness": "fat\n(mm)",
     "bone_half_width": "bone half-\nwidth (mm)",
+    BULK: "bulk\nmodulus (1)",
     SOFT: "dermis, fat:\nfactor (1)",
     EPIDERMIS: "epidermis:\nfactor (1)",
 }
@@ -46,7 +47,6 @@ BINS = 14
 BEST = "most probable pad"
 CLIP = (-2.0, 3.0)
 """Of the evidence: farthest places shown."""
-ROLES = {"fitted": "fitted", "apart": "inside the epidermis (not fitted)", "held_out": "held out"}
 
 
 def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
@@ -60,17 +60,18 @@ def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
 @styled
 def posterior_picture(frame: pd.DataFrame) -> Figure:
     """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line
-    for the pad chosen before.
+    for the pad of nu = 0.48.
     """
     columns = list(frame.columns[1:])
     shares = frame["reading"].value_counts(normalize=True)
     told = ", ".join(
-        f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01
+        f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.02
     )
     note = [
         f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as "
         "long-term ones, of instantaneous ones "
-        "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
+        "the series leaves 0.576; bulk modulus over that of nu = 0.48. Numbers: rank correlations. "
+        "Orange: the pad of scenes. Histograms that are cut off end where the search did.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
     n, values = len(columns), frame[columns]
@@ -78,7 +79,7 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     rank = values.corr(method="spearman").to_numpy()
     margin = 0.04 * (values.max() - values.min()).clip(lower=1e-9)
     limits = np.column_stack([values.min() - margin, values.max() + margin])
-    chosen = [pads.CHOSEN_BEFORE[name] for name in SHOWN]
+    chosen = [pads.BEFORE[name] for name in SHOWN]
     line = {"color": CATEGORIES[1], "lw": 0.8}
     for (i, j), ax in np.ndenumerate(axes):
         ax.tick_params(labelsize=6, length=2)
@@ -114,8 +115,8 @@ def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.Dat
     """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the
     lower end, 1 at the upper.
     """
-    columns = "id figure surface measure low high tolerance unit role family".split()
-    rows = shown.merge(evidence.rows[columns], on="id")
+    columns = "id figure surface measure low high tolerance unit family".split()
+    rows = shown.merge(evidence.rows[columns].assign(half=evidence.halves), on="id")
     rows["pad"] = rows["pad"].replace(best, BEST)
     return rows.assign(place=(rows["shown"] - rows["low"]) / (rows["high"] - rows["low"]))
 
@@ -131,7 +132,7 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     ids = ids.assign(k=ids["family"].map(order)).sort_values("k", kind="stable")
     note = [
         "Bars: the interval that a figure leaves, all drawn as long; what is between its "
-        "ends counts as met. White: not fitted. "
+        "ends counts as met. "
         f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. "
         "Numbers beyond three lengths of the bar "
         "stand at the margin.",
@@ -139,14 +140,13 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     fig = study_figure("The evidence, row by row", note, TALLEST)
     looks = {
         "drawn": {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6},
-        CHOSEN: {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
+        HERE: {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
         BEST: {"marker": "o", "ms": 3.4, "color": CATEGORIES[0]},
     }
-    for ax, roles in zip(fig.subplots(1, 2), (("fitted", "apart"), ("held_out",)), strict=True):
-        rows = pd.concat([ids[ids["role"] == role] for role in roles])
+    for ax, half in zip(fig.subplots(1, 2), HALVES, strict=True):
+        rows = ids[ids["half"] == half]
         at = dict(zip(rows["id"], range(len(rows)), strict=True))
-        shades = np.where(rows["role"] == "fitted", "0.86", "white")
-        ax.barh(range(len(rows)), 1, height=0.72, color=shades, edgecolor="0.7", lw=0.5)
+        ax.barh(range(len(rows)), 1, height=0.72, color="0.86", edgecolor="0.7", lw=0.5)
         for name, look in looks.items():
             part = drawn if name == "drawn" else frame[frame["pad"] == name]
             part = part[np.isfinite(part["place"]) & part["id"].isin(rows["id"])]
@@ -154,11 +154,10 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         names = [
             f"{r.figure}  {r.surface}: {r.measure.replace('_', ' ')}" for r in rows.itertuples()
         ]
-        ax.set_yticks(range(len(rows)), names, fontsize=5.6)
+        ax.set_yticks(range(len(rows)), names, fontsize=6)
         ax.set(xlim=(CLIP[0] - 0.1, CLIP[1] + 0.1), ylim=(len(rows) - 0.3, -0.7))
-        ax.set_title(" and ".join(ROLES[role] for role in roles))
+        ax.set_title(f"figures with an {half} number")
         ax.set_xlabel("place in the interval, its ends at 0 and 1")
-        ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
     handles = [handle(name, ls="none", **look) for name, look in reversed(looks.items())]
     header_legend(fig, handles, room=0.2)
     return fig

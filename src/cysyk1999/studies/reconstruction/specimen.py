@@ -7,34 +7,39 @@ of them.
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.unknowns import EPIDERMIS, SCALED, SOFT
+from cysyk1999.studies.reconstruction.unknowns import (
+    BULK,
+    EPIDERMIS,
+    EPIDERMIS_BULK,
+    SCALED,
+    SOFT,
+)
+
+PREFERRED = 100
+"""Odds by which a reading must be preferred to one that is nearer to the printed words."""
 
 
 def most_probable(readings: pd.DataFrame) -> str:
-    """The reading of the moduli with the largest evidence, of those of the headline's energy.
-
-    Of readings whose evidence differs by less than a factor of e, which is hardly any, the one that
-    the table has first: what the thesis may have meant comes before factors that it does not
-    mention.
+    """The first of the readings, which are in the order of how near they are to the printed words,
+    that no other is preferred to by more than `PREFERRED` to 1.
     """
-    rows = readings[readings["strain energy"] == readings["strain energy"].iloc[0]]
-    near = rows[rows["log evidence (1)"] > rows["log evidence (1)"].max() - 1]
-    return str(near["reading"].iloc[0])
+    near = readings["log evidence (1)"] > readings["log evidence (1)"].max() - np.log(PREFERRED)
+    return str(readings.loc[near, "reading"].iloc[0])
 
 
 def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     """The file's text, of the tables of the study: the best pad of the most probable reading.
 
-    Moduli are written as printed where the reading is a state of all of them, and else as long-term
-    ones, times its factors.
+    Moduli are written as long-term ones, those printed times the reading's factors.
     """
     reading = most_probable(readings)
     rows = posterior[posterior["reading"] == reading].set_index("quantity")
-    here = readings[readings["reading"] == reading]
-    says, share = here["says"].iloc[0], here["probability (1)"].sum()
+    here = readings[readings["reading"] == reading].iloc[0]
+    says, share = here["says"], here["probability (1)"]
 
     def value(name: str, digits: int = 4) -> float:
         return float(f"{rows.loc[name, 'best pad']:.{digits}g}")
@@ -44,17 +49,18 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         told = high > 1.0001 * low
         return f"inferred: {low:.3g} to {high:.3g}" if told else "as the reading says"
 
-    if reading in ("long_term", "instantaneous"):  # as printed
-        state, nu, factors, told = reading, pads.POISSON, (1.0, 1.0), ("stated", "stated")
-    else:
-        state, nu = "long_term", pads.poisson_for(value("bulk_modulus", 6))
-        factors = [value(name) * (1 + nu) / (1 + pads.POISSON) for name in (EPIDERMIS, SOFT)]
-        told = interval(EPIDERMIS, 0.15), interval(SOFT, 0.015)
-    printed = pads.YOUNG_EPIDERMIS, pads.YOUNG_SOFT
-    stiff, soft = (
-        f'{{youngs_modulus: "{1e-6 * e * k:.6g} MPa", poisson_ratio: {nu:.6g}}} # {why}'
-        for e, k, why in zip(printed, factors, told, strict=True)
-    )
+    def layer(name: str, bulk: str, printed: float) -> str:
+        nu = round(pads.poisson_for(value(bulk, 6)), 3)
+        young = printed * value(name, 2) * (1 + nu) / (1 + pads.POISSON)
+        told = interval(name, 1e-6 * printed * (1 + nu) / (1 + pads.POISSON))
+        low, high = (pads.poisson_for(rows.loc[bulk, k]) for k in ("low 5 %", "high 95 %"))
+        nus = f"; Poisson's ratio: {low:.3g} to {high:.3g}" if high > 1.0001 * low else ""
+        return (
+            f'{{youngs_modulus: "{1e-6 * young:.4g} MPa", poisson_ratio: {nu:.6g}}} # {told}{nus}'
+        )
+
+    stiff = layer(EPIDERMIS, EPIDERMIS_BULK, pads.YOUNG_EPIDERMIS)
+    soft = layer(SOFT, BULK, pads.YOUNG_SOFT)
     skin, fat = 1e3 * pads.EPIDERMIS_THICKNESS, value("fat_thickness", 2)
     top, bottom = 1e3 * (pads.APEX - pads.BELOW) - skin - fat, -1e3 * pads.BONE_BOTTOM
     low, high = 1e3 * pads.FORCE / rows.loc[SCALED, ["high 95 %", "low 5 %"]]
@@ -63,7 +69,7 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
 # The pad that the thesis's figures are most likely of: {says}
 # (probability {share:.2f} among those of figures/tables/reconstruction_readings.md). \
 Stated: printed in the thesis.
-# Inferred: from chapter 3 and half of chapter 4 (`snakemake reconstruction`): \
+# Inferred: from the figures of chapters 3 to 5 (`snakemake reconstruction`): \
 with intervals of 90 %, in mm, of
 # figures/tables/reconstruction_posterior.md. Assumed: of neither.
 outline:
@@ -85,12 +91,11 @@ no layer of its own
 the middle of the axes
   nail_half_width: "{value("nail_half_width", 2):.4g} mm" # {interval("nail_half_width")}: \
 the figures hardly tell
-layers: # stated: section 3.4, in a state that is not
+layers: # printed in section 3.4: 0.15, 0.015 and 0.015 MPa, nu = 0.48, in a state that is not
   epidermis: {stiff}
   dermis: {soft}
   fat: {soft}
-moduli: {state} # inferred: odds against long-term ones in \
-figures/tables/reconstruction_readings.md
+moduli: long_term # the factors on the printed moduli are inferred, so that the state says nothing
 prony: # stated: Eq 3-1; shear, normalised by the instantaneous modulus
   - {{g: 0.055, tau: "3.25 s"}}
   - {{g: 0.3691, tau: "0.3414 s"}}

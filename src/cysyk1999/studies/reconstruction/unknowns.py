@@ -2,7 +2,7 @@
 ``config/reconstruction/unknowns.yaml``.
 
 Inside this study numbers stay in the units of the file, which are part of their names' meaning:
-N/m, mm, 1.
+N/m, mm, gf, 1.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
-from scipy.stats import qmc, truncnorm
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
 
 from fingerpad.documents import Problem, Strict, explain, read_yaml
 
@@ -22,7 +23,10 @@ SCALED = "line_load"
 """The unknown that a pad is simulated with over the state of dermis and fat."""
 LOAD, STIFFNESS = "load_over_state", "stiffness_over_state"
 SOFT, EPIDERMIS = "soft_factor", "epidermis_factor"
-UNITS = ("N/m", "mm", "1")
+ENERGY, STROKE_ENERGY = "energy_factor", "stroke_energy_factor"
+BULK, EPIDERMIS_BULK = "bulk_modulus", "epidermis_bulk"
+"""Bulk modulus over that of nu = 0.48, at the same shear modulus."""
+UNITS = ("N/m", "mm", "gf", "1")
 
 
 def _number(value: Any) -> tuple[float, str]:
@@ -107,8 +111,8 @@ class Unknown(Strict):
         if self.normal is None:
             return _between(share, *self.axis)
         mean, sd = self.normal.mean[0], self.normal.sd[0]
-        low, high = ((end - mean) / sd for end, _ in self.range)
-        return truncnorm.ppf(share, low, high, mean, sd)
+        low, high = (ndtr((end - mean) / sd) for end, _ in self.range)
+        return mean + sd * ndtri(low + share * (high - low))
 
 
 class Reading(Strict):
@@ -118,26 +122,41 @@ class Reading(Strict):
     """Of dermis and fat."""
     epidermis: Factors | None = None
     """Of the epidermis; that of dermis and fat unless given."""
-    bulk_modulus: float | None = None
-    """The bulk modulus's factor, where the reading says it."""
+    bulk_modulus: Factors | None = None
+    """The bulk modulus's factor or its range, where the reading says it."""
+    epidermis_bulk: Factors | None = None
+    """The epidermis's; that of dermis and fat unless given."""
+    energy: Literal["", "_plane_stress"] = ""
+    """What the strain energy is: the headline's, or a formula's."""
+    energy_factor: Factors | None = None
+    """On all strain energies."""
+    stroke_energy_factor: Factors | None = None
+    """On those of chapter 5 beside."""
     says: str
     """The reading in words."""
 
     @property
     def _factors(self) -> dict[str, tuple[float, ...]]:
-        return {SOFT: self.soft, EPIDERMIS: self.epidermis or ()}
+        given = {
+            SOFT: self.soft,
+            EPIDERMIS: self.epidermis,
+            BULK: self.bulk_modulus,
+            EPIDERMIS_BULK: self.epidermis_bulk,
+            ENERGY: self.energy_factor,
+            STROKE_ENERGY: self.stroke_energy_factor,
+        }
+        return {name: factors for name, factors in given.items() if factors}
 
     @property
     def fixed(self) -> dict[str, float]:
         """Values that the reading says, by name."""
-        bulk = {} if self.bulk_modulus is None else {"bulk_modulus": self.bulk_modulus}
-        return {k: v[0] for k, v in self._factors.items() if len(v) == 1} | bulk
+        return {k: v[0] for k, v in self._factors.items() if len(v) == 1}
 
     @property
     def free(self) -> dict[str, Unknown]:
         """Factors that the reading leaves free, by name."""
         return {
-            name: Unknown(range=ends, prior="logarithmic", source=self.says)
+            name: Unknown(range=[f"{end:g}" for end in ends], prior="logarithmic", source=self.says)
             for name, ends in self._factors.items()
             if len(ends) == 2
         }
@@ -184,9 +203,16 @@ class Unknowns(Strict):
         """
         shares = []
         for name, (low, high, logarithmic) in self.axes.items():
-            scale = np.log if logarithmic else np.asarray
-            low, high, value = scale(low), scale(high), scale(values[name])
-            shares.append((value - low) / (high - low))
+            value = np.asarray(values[name], float)
+            far, whole = (
+                (np.log(value / low), np.log(high / low))
+                if logarithmic
+                else (
+                    value - low,
+                    high - low,
+                )
+            )
+            shares.append(far / whole)
         return np.stack(np.broadcast_arrays(*shares), axis=-1)
 
     def from_unit(self, shares: np.ndarray) -> dict[str, np.ndarray]:

@@ -15,7 +15,7 @@ import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index
 from cysyk1999.measures.inputs import read_results
-from cysyk1999.publishing.write import without_round_off, write_frame
+from cysyk1999.publishing.tables import without_round_off, write_frame
 from cysyk1999.studies.common.ridges import boundary
 from cysyk1999.studies.ridges.picture import (
     BAND,

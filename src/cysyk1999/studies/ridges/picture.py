@@ -105,7 +105,13 @@ def height(frame: pd.DataFrame) -> Figure:
         f"{DEFINITION}Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its "
         "receptors follow the boundary. Band: difference to up to twice the edge."
     )
-    fig = study_figure("Ridges: directional index against their height", [note], 4.2)
+    deep = frame[frame["series"] == RECEPTORS_SWEPT[0]].set_index(HEIGHT)[INDEX]
+    title = (
+        f"Ridges {deep.idxmax():g} µm high make a stroke one way felt "
+        f"{(1 + deep.max()) / (1 - deep.max()):.2g} times as much as the other; without ridges "
+        f"{(1 + deep[0]) / (1 - deep[0]):.3g} times"
+    )
+    fig = study_figure(title, [note], 3.3)
     ax = fig.subplots()
     colours = (INK, *CATEGORIES[1::-1])
     for series, colour, marker in zip(RECEPTORS_SWEPT, colours, "os^", strict=True):
@@ -119,9 +125,9 @@ def height(frame: pd.DataFrame) -> Figure:
         look = {"textcoords": "offset points", "ha": "center", "fontsize": 7}
         ax.annotate("in the epidermis", place, (0, 7), **look)
     ax.axhline(0, color=GREY, lw=0.6)
-    ax.set(xlabel="ridge height (µm)", ylabel="directional index", ylim=(-0.8, 0.8))
-    ax.margins(x=0.03)
-    ax.legend(loc="lower left", fontsize=6.5)
+    ax.set(xlabel="ridge height (µm)", ylabel="directional index")
+    ax.margins(x=0.03, y=0.12)
+    ax.legend(loc="upper left", fontsize=6.5)
     return fig
 
 

@@ -17,11 +17,11 @@ import numpy as np
 from cysyk1999.measures.direction import BESIDE, DEPTH
 from cysyk1999.studies.common.ridges import boundary
 from fingerpad import load_scene
+from fingerpad.healing import simulate
 from fingerpad.planning.plan import plan
 from fingerpad.results import write_history
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
 from fingerpad.scenes.specimen import Outline, Ridges
-from fingerpad.simulation import simulate
 from fingerpad.specimen import OutlineCurve, PadMesh, RidgedPad, mesh_for
 
 WAY, STEPS = 4e-3, 24

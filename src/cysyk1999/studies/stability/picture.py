@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from cysyk1999.publishing.style import GREY, INK, PAGE_WIDTH, TALLEST, sheet, styled
-from cysyk1999.publishing.write import publish, publish_table
+from cysyk1999.publishing.tables import publish_table
+from cysyk1999.publishing.write import publish
 from cysyk1999.studies.stability.cases import DEFAULT, METHODS, TEACHING
 
 MEASURES = {
@@ -200,7 +201,7 @@ def heat_map(frame: pd.DataFrame) -> Figure:
         if method == DEFAULT:
             _groups(ax, cases)
     numbers = [1, *range(10, len(cases) + 1, 10)]
-    ax.set_xticks(np.array(numbers) - 1, numbers, fontsize=5.5)
+    ax.set_xticks(np.array(numbers) - 1, numbers, fontsize=6)
     _legend(fig, drawn, height, width)
     return fig
 
@@ -260,7 +261,7 @@ def _legend(fig: Figure, drawn, height: float, width: float) -> None:
         fontsize=6,
         **close,
     )
-    tiny = {"fontsize": 5.6, "va": "top"}
+    tiny = {"fontsize": 6, "va": "top"}
     for k, (name, meaning) in enumerate(MEASURES.values()):
         column, row = divmod(k, (len(MEASURES) + 1) // 2)
         x, y = 1.8 + 2.75 * column, 0.82 - 0.108 * row

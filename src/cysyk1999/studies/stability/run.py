@@ -23,7 +23,7 @@ import pandas as pd
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
-from cysyk1999.publishing.write import write_frame
+from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.common.meshes import split
 from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from cysyk1999.studies.common.plans import finer as finer_plan
@@ -113,6 +113,7 @@ def simulation(
     made = Simulation(scene, replace(chosen, element=element), mesh)
     made.body.lagged = method in SPLIT
     _give_up_late(made.stepper)
+    made.stepper.patience = 0
     return made
 
 

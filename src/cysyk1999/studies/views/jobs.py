@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from cysyk1999.job import Job, part
 from cysyk1999.project import Project
 from cysyk1999.studies.strain_energy_meanings import strain_energy_meanings
-from cysyk1999.studies.views.frames import FRAMES
-from cysyk1999.studies.views.picture import draw_views
+from cysyk1999.studies.views.run import FRAMES, draw_views
 from cysyk1999.studies.views.tables import table_pictures
 from fingerpad.scenes.families import moves_along
 
@@ -34,7 +33,7 @@ def views(project: Project) -> Iterator[Job]:
     if pictures := [picture for picture, table in OF_TABLES.items() if table in tables]:
         read = {
             "tables": project.tables(OF_TABLES[picture] for picture in pictures),
-            "reference": [project.at("config/reference/thesis_numbers.csv")],
+            "reference": project.reference,
         }
         yield Job(table_pictures, read, {"pictures": project.pictures(pictures)})
 

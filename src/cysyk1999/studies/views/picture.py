@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from types import SimpleNamespace
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
-from matplotlib.colors import LogNorm
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
 
-from cysyk1999.measures.inputs import read_results
-from cysyk1999.measures.quantities import DISTANCE, FORCE, IMPULSE, IMPULSE_RATE, SED, TIME, P, X, Y
+from cysyk1999.figures.findings import n
+from cysyk1999.measures.quantities import DISTANCE, IMPULSE, IMPULSE_RATE, SED, TIME, P, X, Y
 from cysyk1999.publishing.style import (
     CATEGORIES,
     DASHED,
@@ -28,11 +27,9 @@ from cysyk1999.publishing.style import (
     study_figure,
     styled,
 )
-from cysyk1999.publishing.write import publish, without_round_off
 from cysyk1999.studies.views.frames import (
     BOUND,
     CORNERS,
-    FRAMES,
     LAYER_LINES,
     SKIN_X,
     SLIP,
@@ -44,6 +41,8 @@ from cysyk1999.studies.views.frames import (
 
 LABELLED = (("epidermis", ("skin", "dermis"), -4.6, 7.6), ("dermis", ("dermis", "fat"), -7.6, 5.0))
 """Layer, the lines round it, x it is pointed at, and height of its name, mm."""
+TOUCHES = 300.0
+"""Pa, from which a map shows contact."""
 ENERGY = "strain energy density on the instantaneous moduli (Pa)"
 CENTRED = {"ha": "center", "va": "center", "fontsize": 6}
 
@@ -57,7 +56,7 @@ def _line(rows: pd.DataFrame, layer: str) -> pd.DataFrame:
     return rows[(rows["series"] == "line") & (rows["layer"] == layer)]
 
 
-def _energies(frame: pd.DataFrame) -> LogNorm:
+def energy_scale(frame: pd.DataFrame) -> LogNorm:
     """A scale to the largest energies but for those of singular points."""
     high = float(np.nanpercentile(frame[SED], 99.7))
     return LogNorm(2e-3 * high, high)
@@ -75,24 +74,46 @@ def _receptors(ax: Axes, section: pd.DataFrame, size: float = 3.0) -> None:
     ax.plot(dots[X], dots[Y], "o", ms=size, mfc="white", mec=INK, mew=0.7)
 
 
-def _field(
+def _smooth(mesh: pd.DataFrame) -> Iterator[tuple[Triangulation, np.ndarray]]:
+    """Each layer in triangles, with the logarithm of the strain energy at its nodes: the mean of
+    the elements of the layer that meet there.
+    """
+    for _, rows in mesh.groupby("layer"):
+        corners = rows[CORNERS].to_numpy().reshape(-1, 2)
+        points, node = np.unique(corners.round(3), axis=0, return_inverse=True)
+        node = node.reshape(-1, 4)
+        energy = np.repeat(np.log10(rows[SED].clip(lower=1e-6)), 4)
+        mean = np.bincount(node.ravel(), energy) / np.bincount(node.ravel())
+        triangles = np.concatenate([node[:, [0, 1, 2]], node[:, [0, 2, 3]]])
+        sides = points[triangles]
+        flat = np.abs(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])) < 1e-9
+        yield Triangulation(*points.T, triangles[~flat]), mean
+
+
+def draw_field(
     ax: Axes, mesh: pd.DataFrame, section: pd.DataFrame, norm: LogNorm, top: float
-) -> PolyCollection:
-    """Elements in the colours of their strain energy, the layers, the solid and the receptors."""
-    look = {"cmap": FIELD, "norm": norm, "edgecolor": "face", "linewidth": 0.2}
-    corners = mesh[CORNERS].to_numpy().reshape(-1, 4, 2)
-    drawn = PolyCollection(corners, array=mesh[SED], rasterized=True, **look)
-    ax.add_collection(drawn)
+) -> ScalarMappable:
+    """Strain energy, smooth within each layer, with lines of equal energy (three a factor of ten);
+    the layers, the solid and the receptors.
+    """
+    ends = np.log10([norm.vmin, norm.vmax])
+    scale = Normalize(*ends)
+    for triangles, energy in _smooth(mesh):
+        levels = np.linspace(*ends, 40)
+        ax.tricontourf(triangles, energy, levels, cmap=FIELD, norm=scale, extend="both")
+        lines = np.arange(np.ceil(3 * ends[0]), 3 * ends[1]) / 3
+        look = {"colors": "white", "linewidths": 0.35, "linestyles": "-"}
+        ax.tricontour(triangles, energy, lines, **look)
     for layer in LAYER_LINES:
         line = _line(section, layer)
-        ax.plot(line[X], line[Y], color=INK if layer == "skin" else "white", lw=0.8)
+        ax.plot(line[X], line[Y], color=INK, lw=0.8)
     _surface(ax, section, top)
     _receptors(ax, section)
     ax.set(aspect="equal", xlabel=X.label)
-    return drawn
+    return ScalarMappable(norm, FIELD)
 
 
-def _bar(fig: Figure, drawn, axes, label: str = ENERGY, **options) -> None:
+def colour_bar(fig: Figure, drawn, axes, label: str = ENERGY, **options) -> None:
     options = {"pad": 0.01, "aspect": 22, "extend": "both"} | options
     bar = fig.colorbar(drawn, ax=axes, label=label, **options)
     bar.outline.set_visible(False)
@@ -105,7 +126,7 @@ def _whole_section(ax: Axes, section: pd.DataFrame) -> None:
         line = _line(section, layer)
         ax.fill(line[X], line[Y], fc=LAYER_COLOURS[colour], ec=INK, lw=0.5)
     _surface(ax, section, 9.0)
-    _receptors(ax, section, 1.8)
+    _receptors(ax, section, 2.6)
     line = {"arrowstyle": "-", "lw": 0.5, "shrinkA": 1, "shrinkB": 0}
     for name, layers, x, y in LABELLED:
         place = x, np.mean([_upper(_line(section, layer), x) for layer in layers])
@@ -128,10 +149,15 @@ def _upper(line: pd.DataFrame, x: float) -> float:
 def overview(frame: pd.DataFrame) -> Figure:
     """One case in a row: the surface on the layered pad, pressure, strain energy, response."""
     note = (
-        "Simulated in plane strain, not measured; a to c at the top of the ramp. Rate by Eq 5-1 of "
+        "Simulated in plane strain, not measured; a to c at the top of the ramp. White: lines of "
+        "equal energy, three a factor of ten. Rate by Eq 5-1 of "
         "Cysyk (1999) from the strain energy at 915 µm (lower circle); impulses of one trial."
     )
-    title = "From a surface to impulses: a cylinder of 210 1/m pressed to 20 gf in 0.5 s and held"
+    felt, top = _of(frame, "energy")[SED], 1e-3 * _of(frame, "pressure")[P].max()
+    title = (
+        f"From a surface to impulses: a cylinder of 210 1/m, 20 gf: {n(top)} kPa on the skin, "
+        f"{n(felt.max())} Pa at the receptor, {len(_of(frame, 'impulses'))} impulses"
+    )
     fig = study_figure(title, [note], 2.45)
     grid = fig.add_gridspec(2, 4, width_ratios=[1.2, 0.75, 1.45, 1.0])
     pad, press, field = (fig.add_subplot(grid[:, k]) for k in range(3))
@@ -146,10 +172,10 @@ def overview(frame: pd.DataFrame) -> Figure:
     press.set_title("pressure")
     in_kilo(press.yaxis)
     rows = _of(frame, "field")
-    drawn = _field(field, rows, section, _energies(rows), 6.8)
+    drawn = draw_field(field, rows, section, energy_scale(rows), 6.8)
     field.set(xlim=(-2.6, 2.6), ylim=(3.4, 6.6), yticks=[4, 5, 6], ylabel=Y.label)
     field.set_title("strain energy")
-    _bar(fig, drawn, field, "strain energy\ndensity (Pa)", pad=0.02, aspect=16, shrink=0.75)
+    colour_bar(fig, drawn, field, "strain energy\ndensity (Pa)", pad=0.02, aspect=16, shrink=0.75)
     rows, rate, ticks = (_of(frame, panel) for panel in ("energy", "rate", "impulses"))
     felt.plot(rows[TIME], rows[SED], color=INK)
     felt.set(ylabel="strain energy\n(Pa)", ylim=(0, 1.12 * rows[SED].max()))
@@ -167,19 +193,27 @@ def overview(frame: pd.DataFrame) -> Figure:
 def fields(frame: pd.DataFrame) -> Figure:
     """Strain energy under a plate and two cylinders."""
     note = (
-        "Simulated in plane strain, not measured. Lines: skin, epidermis to dermis, dermis to fat; "
-        "circles: receptors that were 600 and 915 µm under the skin. The stiff epidermis holds "
-        "most of it; the sharper the surface, the closer to it."
+        "Simulated in plane strain, not measured; top of the ramp, 20 gf. Black: skin, epidermis "
+        "to dermis, dermis to fat; white: lines of equal energy, three a factor of ten; circles: "
+        "receptors that were 600 and 915 µm under the skin."
     )
-    title = "Strain energy under three surfaces, 20 gf at the top of the ramp"
+    felt = frame[frame["series"] == "receptor"].pivot(
+        index="panel", columns="layer", values="felt (Pa)"
+    )
+    over = (felt["600 um"] / felt["915 um"]).loc[frame["panel"].unique()]
+    title = (
+        "Strain energy 600 µm deep, in the epidermis, is "
+        + ", ".join(map(n, over))
+        + " times that 915 µm deep under a plate, 210 and 1260 1/m"
+    )
     fig = study_figure(title, [note], 2.6)
-    axes, norm = fig.subplots(1, 3, sharey=True), _energies(frame)
+    axes, norm = fig.subplots(1, 3, sharey=True), energy_scale(frame)
     for ax, panel in zip(axes, frame["panel"].unique(), strict=True):
-        drawn = _field(ax, _of(frame, panel, "element"), _of(frame, panel), norm, 7.0)
+        drawn = draw_field(ax, _of(frame, panel, "element"), _of(frame, panel), norm, 7.0)
         ax.set(xlim=(-4.3, 4.3), ylim=(1.4, 6.6))
         ax.set_title("flat plate" if panel == "flat" else f"K = {panel} 1/m")
     axes[0].set_ylabel(Y.label)
-    _bar(fig, drawn, axes, orientation="horizontal", aspect=60, shrink=0.6)
+    colour_bar(fig, drawn, axes, orientation="horizontal", aspect=60, shrink=0.6)
     return fig
 
 
@@ -187,27 +221,41 @@ def fields(frame: pd.DataFrame) -> Figure:
 def space_time(frame: pd.DataFrame) -> Figure:
     """Maps of a stroke over the skin and the stroke distance."""
     note = (
-        "Simulated: convexities of 52 to 315 1/m (labels at the right), 20 gf, calibrated "
-        "friction. Black: where the middle of a convexity is over the skin at rest; it is met "
+        "Simulated: convexities of 52 to 315 1/m (labels at the right), 27 gf, calibrated "
+        "friction. Dashed: where the middle of a convexity is over the skin at rest; it is met "
         "late, for the skin is dragged along by the surface. Strain energy on instantaneous moduli."
     )
-    title = "A stroke in space and time: what every place on the skin feels, 10 mm/s"
+    slip, touched = (frame.loc[frame["series"] == "map", q] for q in (SLIP, P))
+    title = (
+        f"A stroke at 10 mm/s in space and time: pressure up to {n(1e-3 * touched.max())} kPa, and "
+        f"slip, while in contact, at {n(slip[touched > 0].median())} mm/s in the median"
+    )
     fig = study_figure(title, [note], 4.9)
     maps = frame[frame["series"] == "map"].pivot(index=DISTANCE, columns=SKIN_X)
     axes = fig.subplots(1, 3, sharey=True)
     panels = (
-        (1e-3 * maps[P], "contact pressure (kPa)", "magma_r"),
+        (1e-3 * maps[P], "contact pressure (kPa)", FIELD),
         (maps[SED], "strain energy density, 915 µm (Pa)", FIELD),
-        (maps[SLIP].where(maps[P] > 0), "speed of slip in contact (mm/s)", "viridis"),
+        # beyond the contact as at its edge, which is drawn over it
+        (
+            maps[SLIP].where(maps[P] > 0).ffill(axis=1).bfill(axis=1),
+            "speed of slip in contact (mm/s)",
+            FIELD,
+        ),
     )
     marks = frame.loc[frame["series"] == "convexity", [DISTANCE, "curvature (1/m)"]].to_numpy()
     for ax, (grid, label, colours) in zip(axes, panels, strict=True):
         look = {"cmap": colours, "vmin": 0, "vmax": np.nanpercentile(grid, 99.5)}
-        look |= {"shading": "nearest", "rasterized": True}
+        look |= {"shading": "gouraud", "rasterized": True}
         drawn = ax.pcolormesh(grid.columns, grid.index, grid, **look)
+        if grid is panels[-1][0]:
+            pressure = maps[P].to_numpy()
+            nothing = {"levels": (-1.0, TOUCHES), "colors": "white"}
+            ax.contourf(grid.columns, grid.index, pressure, **nothing)
         for place, _ in marks:
-            ax.plot([-4, 4], [place + 4, place - 4], color=INK, lw=0.5, ls=DASHED)
-        _bar(fig, drawn, ax, label, orientation="horizontal", aspect=26, extend="max")
+            colour = GREY if grid is panels[-1][0] else "white"
+            ax.plot([-4, 4], [place + 4, place - 4], color=colour, lw=0.7, ls=DASHED)
+        colour_bar(fig, drawn, ax, label, orientation="horizontal", aspect=26, extend="max")
         ax.set(xlim=(-4, 4), ylim=(grid.index[-1], grid.index[0]), xlabel="place on the skin (mm)")
     label = {"textcoords": "offset points", "va": "center", "fontsize": 6.5}
     for place, curvature in marks:
@@ -222,12 +270,18 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
     the stroke.
     """
     note = (
-        "Simulated. Line: tangential traction; edge of the grey area: its bound, pressure times "
-        "friction. Where both meet the skin slips, elsewhere it sticks; jumps from node to node "
-        "are those of mesh and steps. e: share of the load carried where it sticks."
+        "Simulated, 10 mm/s. Line: tangential traction; edges of the grey area: its bounds, plus "
+        "and minus pressure times friction. Where both meet the skin slips, elsewhere it sticks. "
+        "Last panel: share of the load carried where it sticks."
     )
-    fig = study_figure("Stick and slip along the contact of a stroke, 10 mm/s", [note], 3.6)
     *instants, whole = frame["panel"].unique()
+    stuck = _of(frame, whole).sort_values(DISTANCE)
+    gone = stuck.loc[stuck[STICKING] < 5, DISTANCE].min()
+    title = (
+        f"Less than 5 % of the load sticks after {n(gone)} mm of a stroke; from there on "
+        f"{n(stuck.loc[stuck[DISTANCE] >= gone, STICKING].mean())} % stick in the mean"
+    )
+    fig = study_figure(title, [note], 3.6)
     grid = fig.add_gridspec(2, len(instants), height_ratios=[1.5, 1])
     looks = {
         "sticks": {"color": CATEGORIES[0], "marker": "o", "ls": "none"},
@@ -238,7 +292,7 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
         ax = fig.add_subplot(grid[0, k], sharey=first)
         first = first or ax
         rows = _of(frame, panel).sort_values(SKIN_X)
-        ax.fill_between(rows[SKIN_X], rows[BOUND], color="0.88", lw=0)
+        ax.fill_between(rows[SKIN_X], -rows[BOUND], rows[BOUND], color="0.88", lw=0)
         ax.plot(rows[SKIN_X], rows[TRACTION], color=GREY, lw=0.8)
         touching = rows[rows[P] > 0]
         for name, look in looks.items():
@@ -251,59 +305,7 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
     handles = [handle(name, ms=3, **look) for name, look in looks.items()]
     first.legend(handles=handles, loc="upper left", handletextpad=0.1)
     first.set_ylabel("traction (kPa)")
-    ax, rows = fig.add_subplot(grid[1, :]), _of(frame, whole)
-    ax.plot(rows[DISTANCE], rows[STICKING], color=INK)
+    ax = fig.add_subplot(grid[1, :])
+    ax.plot(stuck[DISTANCE], stuck[STICKING], color=INK)
     ax.set(xlabel="stroke distance (mm)", ylabel="load that sticks (%)", xlim=(0, 2), ylim=(0, 105))
     return fig
-
-
-@styled
-def adaptation(frame: pd.DataFrame) -> Figure:
-    """Slowly and rapidly adapting responses to two ramps and holds."""
-    note = (
-        "Predicted, not recorded. Slowly adapting: Eq 5-1 of Cysyk (1999), strain energy at 915 "
-        "µm. Rapidly adapting: from the rate of the skin's curvature; threshold, scale and highest "
-        "rate are assumed, nobody states them. Ticks: impulses of five trials."
-    )
-    title = "Slowly and rapidly adapting receptors in ramp and hold, K = 210 1/m, 20 gf"
-    fig = study_figure(title, [note], 3.6)
-    axes = fig.subplots(5, 2, sharex="col", height_ratios=[0.6, 0.55, 1, 0.55, 1])
-    for column, ramp in zip(axes.T, ("40 gf/s", "150 gf/s"), strict=True):
-        rows = _of(frame, f"force {ramp}")
-        column[0].plot(rows[TIME], rows[FORCE], color=INK)
-        column[0].set(title=f"ramp of {ramp}", ylim=(0, 24), yticks=[0, 20])
-        column[0].set_xlim(0, rows[TIME].max())
-        column[-1].set_xlabel(TIME.label)
-        for ticks, rate, kind, colour in (
-            (*column[1:3], "slowly adapting", CATEGORIES[0]),
-            (*column[3:5], "rapidly adapting", CATEGORIES[1]),
-        ):
-            rows = _of(frame, f"{kind} {ramp}", "impulse")
-            trial = rows["trial (1)"]
-            ticks.vlines(rows[IMPULSE], trial - 0.4, trial + 0.4, color=INK, lw=0.6)
-            ticks.set(ylim=(5.6, 0.4), yticks=[])
-            rows = _of(frame, f"{kind} {ramp}", "rate")
-            rate.fill_between(rows[TIME], rows[IMPULSE_RATE], color=colour, alpha=0.25, lw=0)
-            rate.plot(rows[TIME], rows[IMPULSE_RATE], color=colour)
-            highest = frame.loc[frame["panel"].str.startswith(kind), IMPULSE_RATE].max()
-            rate.set_ylim(0, 1.08 * highest)
-            if ramp == "40 gf/s":
-                ticks.set_ylabel(kind.replace(" ", "\n"), rotation=0, ha="right", va="center")
-                rate.set_ylabel("rate (1/s)")
-    axes[0, 0].set_ylabel("force (gf)")
-    return fig
-
-
-VIEWS: dict[str, Callable[[pd.DataFrame], Figure]] = {
-    draw.__name__: draw for draw in (overview, fields, space_time, stick_slip, adaptation)
-}
-"""Name of a picture -> its drawing function of its data frame."""
-
-
-def draw_views(job: SimpleNamespace) -> None:
-    """Job: `histories` -> `pictures`, named as in VIEWS."""
-    histories, _, _ = read_results(job.histories)
-    for picture in job.pictures:
-        name = Path(picture).stem
-        frame = without_round_off(FRAMES[name][0](histories))
-        publish(VIEWS[name](frame), frame, picture)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,6 +11,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from cysyk1999.claims.comparison import KINDS, judged_rows
+from cysyk1999.claims.verdicts import FILL
 from cysyk1999.publishing.style import (
     CATEGORIES,
     GREY,
@@ -22,12 +25,12 @@ from cysyk1999.publishing.style import (
 from cysyk1999.publishing.write import publish
 from cysyk1999.reference_data import read_reference
 
-WITHIN = ("inside", "plausible")
-"""Verdicts on numbers that are met."""
 LEAST, MOST = 0.25, 4.0
 """Ends of the axis of the scorecard."""
 SHORT = {
     "strain energy density": "energy",
+    "strain energy rate": "energy rate",
+    "contact of the centre with": "contact with",
     "contact pressure": "pressure",
     "instantaneous frequency": "frequency",
     "vertical displacement of the skin": "sinking",
@@ -39,56 +42,68 @@ SHORT = {
 
 
 def scorecard_rows(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
-    """Rows of the comparison that are results with a number: where the simulated one lies, as a
-    share of the thesis's number, or of the end of its axis or range.
+    """The stated numbers, ranges and axes that count: where the simulated number lies, as a share
+    of the thesis's number or of the end of its range or axis, and the ends of what is judged right.
     """
-    judged = table["role"].eq("result") & table["verdict"].ne("not_comparable")
-    rows = table[judged & table["simulated"].notna()].copy()
-    rows["form"] = rows["id"].map(reference["form"])
-    end = rows["thesis_high"].where(rows["form"] != "value", rows["thesis_low"])
-    rows["relative (1)"] = rows["simulated"] / end
-    forms = [rows["form"] == form for form in ("range", "axis")]
-    rows["low (1)"] = np.select(forms, [rows["thesis_low"] / end, 0.5], 1.0)
-    rows["uncertain"] = rows["thesis_kind"].eq("garbled")
-    number = rows["figure"].map(lambda name: [int(part) for part in name.split("-")])
-    columns = ["id", "figure", "quantity", "condition", "form"]
-    columns += ["relative (1)", "low (1)", "verdict", "uncertain"]
-    return rows.loc[number.sort_values(kind="stable").index, columns]
+    rows = judged_rows(table, reference).query("score != '' and kind != 'trend'")
+    known = reference.loc[rows["id"]].set_index(rows.index)
+    end = known["high"].where(rows["kind"] != "value", known["low"])
+    axis, slack = rows["kind"].eq("axis"), known["tolerance"].fillna(0)
+    low = known["tick"].fillna(FILL * end).where(axis, known["low"] * (1 - slack))
+    high = end * (1 + slack.where(rows["kind"].eq("value"), 0))
+    rows = rows.assign(uncertain=rows["thesis_kind"].eq("garbled"))
+    for name, value in (("relative", rows["simulated"]), ("low", low), ("high", high)):
+        rows[f"{name} (1)"] = value / end
+    chapter = rows["figure"].map(lambda name: [int(part) for part in name.split("-")])
+    columns = ["id", "figure", "quantity", "condition", "kind", "score", "agrees"]
+    columns += ["relative (1)", "low (1)", "high (1)", "uncertain"]
+    rows = rows.loc[chapter.sort_values(kind="stable").index, columns]
+    return rows.sort_values("kind", key=lambda kind: kind.eq("axis"), kind="stable")
 
 
 @styled
 def scorecard(frame: pd.DataFrame) -> Figure:
-    """Every number of the thesis that is a result, a dot a row."""
-    inside = frame["verdict"].isin(WITHIN).sum()
-    title = (
-        f"Every number of the thesis against this model: {inside} of {len(frame)} within its range"
-    )
+    """Every stated number, range and axis of the thesis that counts, a dot a row."""
+
+    def counted(rows: pd.DataFrame) -> str:
+        """How many agree, by kind."""
+        groups = ((names, rows.loc[rows["kind"] == kind, "agrees"]) for kind, names in of.items())
+        return ", ".join(f"{good.sum()} of {len(good)} {names}" for names, good in groups)
+
+    of = {kind: names for kind, names in KINDS.items() if kind != "trend"}
+    held_out = frame[frame["score"] == "held out"]
+    title = f"The thesis against this model: {counted(frame)} agree"
     note = (
-        "Simulated over the thesis's number, or over the end of its range or axis (grey: a number, "
-        "a range, or half an axis to its end; broken: reading uncertain). Filled blue: within; "
-        "open orange: outside. Results only: nothing that was put in or fitted."
+        f"Of what the pad was not fitted to (circles) {counted(held_out)}. Squares: fitted. Grey: "
+        "what is judged right (of an axis from its last tick but one, where it is known, to its "
+        "end; broken: reading uncertain). Filled blue: right; open orange: not. Nothing that was "
+        "put in or holds by construction."
     )
     fig = study_figure(title, [note], TALLEST)
     axes = fig.subplots(1, 3)
-    size = int(np.ceil(len(frame) / len(axes)))
-    for k, ax in enumerate(axes):
-        part = frame.iloc[k * size : (k + 1) * size]
+    on_axis = frame["kind"] == "axis"
+    stated, rest = frame[~on_axis], frame[on_axis]
+    half = int(np.ceil(len(rest) / 2))
+    parts = stated, rest[:half], rest[half:]
+    for ax, part, name in zip(axes, parts, ("number or range", "axis", "axis"), strict=True):
         for y, row in enumerate(part.to_dict("records")):
-            ends = (0.97, 1.03) if row["low (1)"] == 1 else (max(row["low (1)"], LEAST), 1.0)
+            ends = [max(row["low (1)"], LEAST), row["high (1)"]]
             grey = {"color": "0.75", "ls": "-"}
             if row["uncertain"]:
                 grey = {"color": "0.8", "ls": (0, (0.7, 0.5))}
             ax.plot(ends, [y, y], lw=2.4, solid_capstyle="butt", zorder=1, **grey)
-            within = row["verdict"] in WITHIN
-            colour = MEANINGS["verdict"]["inside" if within else "outside"]["color"]
-            dot = {"mec": colour, "mfc": colour if within else "white", "mew": 0.8, "ms": 2.3}
-            ax.plot(np.clip(row["relative (1)"], LEAST, MOST), y, "o", zorder=3, **dot)
+            colour = MEANINGS["verdict"]["inside" if row["agrees"] else "outside"]["color"]
+            dot = {"mec": colour, "mfc": colour if row["agrees"] else "white", "mew": 0.8}
+            mark = "s" if row["score"] == "fitted" else "o"
+            ax.plot(np.clip(row["relative (1)"], LEAST, MOST), y, mark, ms=2.3, zorder=3, **dot)
         _name_figures(ax, part)
         ax.axvline(1, color=GREY, lw=0.5, zorder=0)
-        ax.set(xscale="log", xlim=(LEAST * 0.9, MOST * 1.1), ylim=(size - 0.4, -0.6), yticks=[])
-        ax.set_xlabel("simulated over thesis")
+        ax.set(
+            xscale="log", xlim=(LEAST * 0.9, MOST * 1.1), ylim=(len(part) - 0.4, -0.6), yticks=[]
+        )
+        ax.set_xlabel(f"share of the end of\nthe thesis's {name}")
         ticks = (0.25, 0.5, 1, 2, 4)
-        ax.set_xticks(ticks, map(str, ticks), fontsize=5.5)
+        ax.set_xticks(ticks, map(str, ticks), fontsize=6)
         ax.minorticks_off()
     return fig
 
@@ -104,10 +119,10 @@ def _name_figures(ax, part: pd.DataFrame) -> None:
         quantity = rows["quantity"].mode()[0]
         for words, short in SHORT.items():
             quantity = quantity.replace(words, short)
-        lines = textwrap.wrap(f"{rows['figure'].iloc[0]} {quantity}", 29)
+        lines = textwrap.wrap(f"{rows['figure'].iloc[0]} {quantity}", 29 if len(rows) > 1 else 36)
         if len(rows) > 2:
             lines.append(f"{len(rows)} numbers")
-        look = {"ha": "right", "va": "center", "fontsize": 5.6, "linespacing": 1.05}
+        look = {"ha": "right", "va": "center", "fontsize": 6, "linespacing": 1.0}
         place = {"transform": ax.get_yaxis_transform()}
         ax.text(-0.03, (begin + end) / 2, "\n".join(lines), **look, **place)
 
@@ -123,38 +138,67 @@ def candidate_rows(table: pd.DataFrame) -> pd.DataFrame:
     return shown.rename(columns={name: f"{name} (1)" for name in numbers})
 
 
+OF_SPHERES = "Goodwin"
+"""How sets of recordings begin whose surfaces were spheres or, in most of a set, may have been."""
+
+
 @styled
 def candidate_stimuli(frame: pd.DataFrame) -> Figure:
     """Candidates for what a slowly adapting receptor responds to, ranked by the recorded rates they
-    explain.
+    explain: recorded under cylinders, as simulated, and under spheres.
     """
-    sets, share = frame["rates"].unique(), "r_squared (1)"
+    share = "r_squared (1)"
+    spheres = frame["rates"].str.startswith(OF_SPHERES)
+    of = {
+        "recorded under cylinders": frame[~spheres],
+        "under spheres, or most of them": frame[spheres],
+    }
     order = frame.groupby("candidate")[share].median().sort_values(ascending=False).index
     note = (
-        "Share of the variance of recorded mean rates that a linear law of the simulated stimulus "
-        "explains (bars: the ways to read which surface a rate is of); ordered by the median of "
-        "the sets. Few rates, of monkeys, most under spheres: an order, not a proof."
+        "Share of the variance of recorded mean rates that a linear law of the simulated stimulus, "
+        "always a cylinder, explains (bars: the ways to read which surface a rate is of). Spheres "
+        "need a model with spheres: b ranks nothing. Ordered by the median of all. Few rates, of "
+        "monkeys: an order, not a proof."
+    )
+    best, worst = (
+        part.loc[how(part[share])]
+        for part in (of["recorded under cylinders"],)
+        for how in (pd.Series.idxmax, pd.Series.idxmin)
     )
     title = (
-        "What does a slowly adapting receptor respond to? Candidate stimuli against recorded rates"
+        f"Of rates recorded under cylinders {_times(best['candidate'])} explains most (R² "
+        f"{best[share]:.2f}), {_times(worst['candidate'])} least ({max(worst[share], 0):.2f})"
     )
     fig = study_figure(title, [note], 3.3)
-    ax = fig.subplots()
-    for k, name in enumerate(sets):
+    axes, looks = fig.subplots(1, 2, sharey=True, width_ratios=(1, 1.2)), iter(range(9))
+    for ax, (words, part) in zip(axes, of.items(), strict=True):
+        _candidates(ax, part, order, share, looks)
+        ax.set_title(words)
+    axes[0].set_yticks(range(len(order)), map(_times, order))
+    axes[0].set_ylim(len(order) - 0.5, -0.5)
+    return fig
+
+
+def _times(candidate: str) -> str:
+    return candidate.replace(" x ", " × ")
+
+
+def _candidates(ax, frame: pd.DataFrame, order: pd.Index, share: str, looks: Iterator[int]) -> None:
+    """One marker a candidate and set of rates."""
+    sets = frame["rates"].unique()
+    for k, (name, look) in enumerate(zip(sets, looks, strict=False)):
         rows = frame[frame["rates"] == name].set_index("candidate").reindex(order)
         value, y = rows[share], np.arange(len(order)) + 0.15 * (k - (len(sets) - 1) / 2)
         ends = [value - rows["r_squared_low (1)"], rows["r_squared_high (1)"] - value]
-        look = {"color": CATEGORIES[k % len(CATEGORIES)], "fmt": MARKERS[k % len(MARKERS)]}
-        look |= {"xerr": np.clip(ends, 0, None), "ms": 3.0, "elinewidth": 0.8}
+        own = {"color": CATEGORIES[look % len(CATEGORIES)], "fmt": MARKERS[look % len(MARKERS)]}
+        own |= {"xerr": np.clip(ends, 0, None), "ms": 3.0, "elinewidth": 0.8}
         label = f"{name} ({rows['rates used (1)'].max():.0f} rates)"
-        ax.errorbar(value.clip(lower=0), y, label=label, **look)
+        ax.errorbar(value.clip(lower=0), y, label=label, **own)
     for k in range(len(order) - 1):
         ax.axhline(k + 0.5, color="0.92", lw=0.5, zorder=0)
-    ax.set_yticks(range(len(order)), [name.replace(" x ", " × ") for name in order])
-    ax.set(xlim=(0, 1.01), ylim=(len(order) - 0.5, -0.5), xlabel="variance explained, R²")
+    ax.set(xlim=(0, 1.01), xlabel="variance explained, R²")
     ax.tick_params(axis="y", length=0)
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    return fig
+    ax.legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=1)
 
 
 def table_pictures(job: SimpleNamespace) -> None:

@@ -10,6 +10,8 @@ from fingerpad.specimen.ridges import RidgedPad
 
 def decide(case: Case) -> Effect:
     """On where everything is its own mirror image in x = 0."""
+    if case.scene.axisymmetric:
+        return Effect(True, "a body of revolution: half its section is turned about x = 0")
     if not case.profile.symmetric:
         return Effect(False, "the stimulus is not symmetric about x = 0")
     if case.moves:

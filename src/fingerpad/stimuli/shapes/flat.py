@@ -10,6 +10,7 @@ from fingerpad.stimuli.shapes.shape import Shape
 class Flat(Shape):
     """Rigid flat plate."""
 
+    kinematics: ClassVar = ("plane_strain", "axisymmetric")
     shape: Literal["flat"] = "flat"
     steepness: ClassVar[float] = 0.0
 

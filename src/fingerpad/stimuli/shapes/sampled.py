@@ -38,6 +38,7 @@ class Sampled(CurvedShape):
     follows: ClassVar = {"csv": ("x", "y", "read_as")}
 
     model_config = ConfigDict(json_schema_extra=_needs_its_file)
+    kinematics: ClassVar = ("plane_strain", "axisymmetric")
     shape: Literal["sampled"] = "sampled"
     csv: Path | None = None
     """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly
@@ -75,6 +76,19 @@ class Sampled(CurvedShape):
     @cached_property
     def curve(self) -> Points:
         return Points(self.x, self.y, self.ends, self.smooth)
+
+    def turned(self):
+        """With the mirror images of its points, which begin on the axis, or are mirrored."""
+        x, y = np.array(self.x), np.array(self.y)
+        if np.array_equal(x, -x[::-1]) and np.array_equal(y, y[::-1]):
+            return self
+        if x[0] < 0:
+            problem = f"has points beyond the axis of revolution, from x = {x[0] * 1e3:.4g} mm"
+            raise Problem(problem, "points from x = 0 on", ("csv",))
+        on = slice(1 if x[0] == 0 else 0, None)
+        points = {"x": tuple(np.append(-x[::-1], x[on]).tolist())}
+        points["y"] = tuple(np.append(y[::-1], y[on]).tolist())
+        return self.model_copy(update=points)
 
     @property
     def notes(self):

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from inspect import get_annotations
 from operator import attrgetter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from fingerpad.documents import HIDE, Problem, Strict, nearest
 from fingerpad.fields import OneOf
@@ -23,7 +23,14 @@ class Shape(Strict, Profile):
     """A rigid shape: the keys a scene gives it, and its geometry.
 
     A subclass is a shape under the name that is the default of its field ``shape``.
+
+    Attributes
+    ----------
+    kinematics
+        In which it can touch: "plane_strain", "axisymmetric", or both.
     """
+
+    kinematics: ClassVar[tuple[str, ...]] = ("plane_strain",)
 
     if TYPE_CHECKING:
         shape: str
@@ -34,6 +41,16 @@ class Shape(Strict, Profile):
             cls
         ):  # a class that only evaluates otherwise has the name of its parent, and not its place
             SHAPES[cls.model_fields["shape"].default] = cls
+
+    def turned(self) -> Shape:
+        """The shape whose right half this is, for a body of revolution.
+
+        Raises
+        ------
+        Problem
+            It has points on the other side of the axis.
+        """
+        return self
 
     def recorded(self) -> dict[str, Any]:
         """What provenance says of it beside its fields."""

@@ -1,0 +1,1 @@
+"""Measured touch: every independent measurement against its prediction."""

@@ -1,0 +1,80 @@
+"""The mathematics of an answer, which a page repeats in a few lines: Legendre polynomials of the
+knobs, and cubics in time.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.polynomial import legendre
+
+WARPS = {"linear": np.array, "square root": np.sqrt, "logarithm": np.log}
+"""What a polynomial sees of a knob's values."""
+SOONEST = 0.05
+"""s; holds are interpolated in log(1 + time / SOONEST)."""
+
+
+def exponents(knobs: int, degree: int) -> np.ndarray:
+    """Degrees (terms, knobs) of all products of polynomials up to a total degree, lowest first.
+
+    >>> exponents(2, 1).tolist()
+    [[0, 0], [0, 1], [1, 0]]
+    """
+    found = [p for p in product(range(degree + 1), repeat=knobs) if sum(p) <= degree]
+    return np.array(sorted(found, key=lambda p: (sum(p), p)), int).reshape(-1, knobs)
+
+
+def basis(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
+    """Values (n, terms) of products of Legendre polynomials.
+
+    Parameters
+    ----------
+    points
+        (n, knobs), from -1 to 1.
+    powers
+        (terms, knobs), as `exponents` gives them.
+    """
+    found = np.ones((len(points), len(powers)))
+    for column, degrees in zip(points.T, powers.T, strict=True):
+        found *= legendre.legvander(column, int(degrees.max(initial=0)))[:, degrees]
+    return found
+
+
+def cubic_weights(grid: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Weights (m, n) of values on a grid that give the values at other places.
+
+    Between two points of the grid it is the cubic through the four around them; at the ends, and
+    beyond, through the last four. A grid of fewer points has a parabola, a line or a constant.
+
+    Parameters
+    ----------
+    grid
+        (n,), rising.
+    at
+        (m,).
+
+    Examples
+    --------
+    >>> weights = cubic_weights(np.array([0.0, 1.0, 2.0, 4.0]), np.array([3.0]))
+    >>> float(weights[0] @ np.array([0.0, 1.0, 8.0, 64.0]))
+    27.0
+    """
+    grid, at = np.asarray(grid, float), np.atleast_1d(np.asarray(at, float))
+    count = min(4, len(grid))
+    first = np.clip(np.searchsorted(grid, at, side="right") - 2, 0, len(grid) - count)
+    near = first[:, None] + np.arange(count)
+    weights, rows = np.zeros((len(at), len(grid))), np.arange(len(at))
+    for k in range(count):
+        own, value = grid[near[:, k]], np.ones(len(at))
+        for j in range(count):
+            if j != k:
+                other = grid[near[:, j]]
+                value *= (at - other) / (own - other)
+        weights[rows, near[:, k]] = value
+    return weights
+
+
+def held(time: np.ndarray) -> np.ndarray:
+    """The scale in which a hold is interpolated. time: s since it began."""
+    return np.log1p(np.asarray(time, float) / SOONEST)

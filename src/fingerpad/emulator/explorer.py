@@ -1,0 +1,119 @@
+"""A page on which a person turns the knobs of an emulator: one file, without a server or a network.
+
+`page.html`, `page.css` and `page.js` are its parts, plain and readable; the emulator is put between
+them as JSON.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fingerpad.documents import SceneError
+from fingerpad.emulator.basis import SOONEST
+from fingerpad.emulator.model import LOGARITHMIC, PLACES, STRESSES, Emulator
+from fingerpad.receptors.laws import THESIS_RATE
+
+DIGITS = 9
+"""Of the numbers on the page."""
+SURFACES = {
+    "flat": 0.0,
+    "79": 78.74,
+    "105": 104.99,
+    "158": 157.48,
+    "210": 209.97,
+    "315": 314.96,
+    "420": 419.95,
+    "630": 629.92,
+    "1260": 1259.84,
+}
+"""The nine surfaces of Cysyk (1999): name -> curvature, 1/m."""
+NEEDED = ("stimulus.curvature", "motion[0].press_to_force", "motion[0].rate")
+SHOWN = {
+    "stimulus.curvature": "Curvature of the surface",
+    "motion[0].press_to_force": "Force",
+    "motion[0].rate": "Rate of the force",
+    "specimen.outline.epidermis_thickness": "Thickness of the epidermis",
+}
+"""What the page calls a knob; others have their key."""
+_HERE = Path(__file__).parent
+
+
+def page(emulator: Emulator) -> str:
+    """The page of an emulator, HTML.
+
+    Parameters
+    ----------
+    emulator
+        Of cylinders that are pressed at a rate and held; curvature, force and rate are knobs.
+
+    Raises
+    ------
+    SceneError
+        It is an emulator of other scenes; one line.
+    """
+    keys = [knob.key for knob in emulator.knobs]
+    missing = [key for key in NEEDED if key not in keys]
+    if missing or not len(emulator.moments.hold):
+        raise SceneError(
+            f"the emulator: {missing[0] if missing else 'motion[1].hold'} is no knob of it; "
+            "allowed: of a cylinder that is pressed at a rate and held, with curvature, force and "
+            "rate as knobs"
+        )
+    parts = {name: (_HERE / f"page.{name}").read_text(encoding="utf-8") for name in ("css", "js")}
+    parts["model"] = json.dumps(_model(emulator), separators=(",", ":")).replace("</", "<\\/")
+    text = (_HERE / "page.html").read_text(encoding="utf-8")
+    for name, part in parts.items():
+        text = text.replace(f"@{name}@", part)
+    return text
+
+
+def _model(emulator: Emulator) -> dict[str, Any]:
+    """All that the page needs, as plain data."""
+    groups = {
+        name: {
+            "shape": list(group.shape),
+            "logarithmic": name in LOGARITHMIC,
+            "stress": name in STRESSES,
+            "mean": _numbers(group.mean),
+            "rows": _numbers(group.rows),
+            "coefficients": _numbers(group.coefficients),
+            "band": _numbers(group.band),
+        }
+        for name, group in emulator.groups.items()
+    }
+    law, base = THESIS_RATE, emulator.base
+    return {
+        "knobs": [
+            knob.record() | {"label": SHOWN.get(knob.key, knob.key)} for knob in emulator.knobs
+        ],
+        "modulus": {"low": 0.5, "high": 2.0},
+        "press": _numbers(emulator.moments.press),
+        "hold": _numbers(emulator.moments.hold),
+        "soonest": SOONEST,
+        "powers": emulator.powers.tolist(),
+        "places": _numbers(PLACES),
+        "grids": {name: _numbers(grid) for name, grid in emulator.grids.items()},
+        "contact_length": base["specimen"]["contact_length"],
+        "base": base,
+        "groups": groups,
+        "surfaces": list(SURFACES.items()),
+        "scenes": emulator.about["scenes"],
+        "law": {
+            "per_energy": law.per_energy,
+            "per_rate": law.per_rate,
+            "threshold": law.threshold,
+            "rate_threshold": law.rate_threshold,
+            "spontaneous": law.spontaneous,
+        },
+    }
+
+
+def _numbers(array: np.ndarray) -> Any:
+    """Nested lists of an array, to `DIGITS` digits."""
+    if array.ndim > 1:
+        return [_numbers(row) for row in array]
+    return [float(f"{value:.{DIGITS}g}") for value in array.tolist()]

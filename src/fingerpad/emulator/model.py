@@ -1,0 +1,404 @@
+"""An emulator: its answers, and its file. It needs nothing but numpy and xarray."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.documents import SceneError
+from fingerpad.emulator.basis import basis, cubic_weights, held
+from fingerpad.emulator.question import Knob, Question, ask
+from fingerpad.files import write_atomically
+from fingerpad.scenes.scene import Scene
+
+SCALARS = ("indentation_depth", "contact_width", "peak_pressure", "centre_pressure")
+LOGARITHMIC = (*SCALARS, "estimated_error")
+UNITS = {
+    "indentation_depth": "m",
+    "contact_width": "m",
+    "peak_pressure": "Pa",
+    "centre_pressure": "Pa",
+    "strain_energy_density": "Pa",
+    "contact_pressure": "Pa",
+    "force": "N/m",
+    "skin_displacement_x": "m",
+    "skin_displacement_y": "m",
+}
+STRESSES = ("peak_pressure", "centre_pressure")
+"""Quantities that grow with the modulus factor."""
+PLACES = np.sin(np.pi / 2 * np.linspace(0, 1, 25))
+"""Shares of the contact's half width, denser towards its edge."""
+NODES = 161
+"""Skin nodes of an answer."""
+FORMAT = 1
+_CHUNK = 20_000
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Shares (n,) of the press's force and times (m,) of the hold, s, that quantities are known
+    at.
+    """
+
+    press: np.ndarray
+    hold: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.press) + len(self.hold)
+
+    def weights(self, share: np.ndarray, hold: np.ndarray) -> np.ndarray:
+        """Weights (k, moments) of the values at all moments: at a share of the press while `hold`
+        is 0, in the hold where it is above.
+        """
+        found, n = np.zeros((len(share), len(self))), len(self.press)
+        in_press = np.asarray(hold) <= 0
+        press = cubic_weights(np.log(self.press), np.log(np.asarray(share)[in_press]))
+        found[in_press, :n] = press
+        if not in_press.all():
+            grid = np.concatenate([[0.0], held(self.hold)])
+            found[~in_press, n - 1 :] = cubic_weights(grid, held(np.asarray(hold)[~in_press]))
+        return found
+
+
+@dataclass(frozen=True)
+class Group:
+    """The polynomials of one quantity.
+
+    The quantities are `LOGARITHMIC` ones; ``pressure_shape``, pressure over the mean pressure at
+    `PLACES`; ``skin_displacement_x`` and ``_y`` over the depth; ``energy_root``, the root of the
+    strain energy density over the line load.
+
+    Attributes
+    ----------
+    shape : (...) of the quantity, moments first.
+    mean, rows, band : (outputs,), (parts, outputs), (outputs,) mean, principal components, and the
+        half width of the band; in the logarithm where that is emulated.
+    coefficients : (terms, parts).
+    """
+
+    shape: tuple[int, ...]
+    mean: np.ndarray
+    rows: np.ndarray
+    coefficients: np.ndarray
+    band: np.ndarray
+
+    def folded(self, weights: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and coefficients of the quantity at weighted moments: (m,), (terms, m)."""
+        mean, rows = self.mean, self.rows
+        if weights is not None:
+            mean = np.tensordot(weights, mean.reshape(self.shape), 1).ravel()
+            rows = self.rows.reshape(-1, *self.shape)
+            rows = np.einsum("km,pm...->pk...", weights, rows).reshape(len(self.rows), -1)
+        return mean, self.coefficients @ rows
+
+
+@dataclass(frozen=True)
+class Emulator:
+    """What a sweep's scenes answer, between them; see `fingerpad.emulate`.
+
+    Attributes
+    ----------
+    knobs : list of Knob
+        The sweep's keys, and the box.
+    base : dict
+        The sweep's scene.
+    moments : Moments
+        When quantities are known.
+    grids : dict
+        Arcs of the skin and its places at rest; depths and offsets of the receptors; m.
+    powers : numpy.ndarray
+        (terms, knobs) degrees of the polynomials.
+    groups : dict
+        Quantity -> `Group`.
+    about : dict
+        Provenance of the sweep, its number of scenes, and ``held_out``, the errors of a tenth.
+
+    Examples
+    --------
+    >>> import fingerpad, tempfile
+    >>> press = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}],
+    ...          "accuracy": "draft"}
+    >>> over = {"motion[0].press_to_force": {"range": ["10 gf", "40 gf"], "count": 8}}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = fingerpad.sweep(press, over, out=folder, histories=True)
+    ...     pad = fingerpad.emulate(folder)
+    >>> isinstance(pad, fingerpad.Emulator), [knob.name for knob in pad.knobs]
+    (True, ['press_to_force'])
+    >>> pad.predict(press).indentation_depth.units
+    'm'
+    """
+
+    knobs: list[Knob]
+    base: Mapping[str, Any]
+    moments: Moments
+    grids: Mapping[str, np.ndarray]
+    powers: np.ndarray
+    groups: Mapping[str, Group]
+    about: Mapping[str, Any]
+
+    def terms(self, points: np.ndarray) -> np.ndarray:
+        """Polynomials (n, terms) at points (n, knobs), SI."""
+        columns = zip(self.knobs, np.asarray(points, float).T, strict=True)
+        return basis(np.stack([k.scaled(c) for k, c in columns], axis=1), self.powers)
+
+    def values(
+        self,
+        points: np.ndarray,
+        names: tuple[str, ...] | None = None,
+        weights: np.ndarray | None = None,
+    ) -> dict[str, np.ndarray]:
+        """Quantities at many points.
+
+        Parameters
+        ----------
+        points
+            (n, knobs), SI, at a modulus factor of 1. They are not compared with the box.
+        names
+            Of the quantities; all without.
+        weights
+            (k, moments) as `Moments.weights` gives them; all moments without.
+
+        Returns
+        -------
+        dict
+            Name -> (n, k, ...) values, SI.
+        """
+        names = tuple(self.groups) if names is None else names
+        folded = {
+            name: self.groups[name].folded(None if name == "estimated_error" else weights)
+            for name in names
+        }
+        parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
+        for start in range(0, len(points), _CHUNK):
+            terms = self.terms(points[start : start + _CHUNK])
+            for name, (mean, slopes) in folded.items():
+                value = mean + terms @ slopes
+                parts[name].append(np.exp(value) if name in LOGARITHMIC else value)
+        shapes = {n: (-1, *self.groups[n].shape) for n in names}
+        if weights is not None:
+            wanted = (n for n in names if n != "estimated_error")
+            shapes |= {n: (-1, len(weights), *self.groups[n].shape[1:]) for n in wanted}
+        return {n: np.concatenate(p).reshape(shapes[n]) for n, p in parts.items()}
+
+    def predict(
+        self, scene: Scene | str | Path | Mapping[str, Any], extrapolate: bool = False
+    ) -> xr.Dataset:
+        """The history that a scene would have.
+
+        Parameters
+        ----------
+        scene
+            A scene, its file, or a dictionary. It may differ from the sweep's in the sweep's keys,
+            in a common factor of all moduli, and in a shorter hold. Its accuracy is not looked at.
+        extrapolate
+            Answer outside the box too. The band is then NaN: nothing is known of it.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables of a history, with its names and units. ``<name>_error`` is the half width of
+            the band that held 95 % of the scenes left out of the fit. The attribute
+            ``estimated_error`` is the finite element error on top, relative.
+
+        Raises
+        ------
+        SceneError
+            The scene is another than the sweep's, or outside its box; one line.
+        """
+        asked = ask(scene, self.base, self.knobs)
+        if asked.outside and not extrapolate:
+            raise SceneError(asked.outside[0])
+        return self._history(asked)
+
+    def _history(self, asked: Question) -> xr.Dataset:
+        share, hold, time, leg = self._times(asked)
+        weights = self.moments.weights(share, hold)
+        found = {k: v[0] for k, v in self.values(asked.point[None], None, weights).items()}
+        keys = {k.key: v for k, v in zip(self.knobs, asked.point, strict=True)}
+        force = keys.get("motion[0].press_to_force", self.base["motion"][0]["press_to_force"])
+        load = share * force * asked.modulus / self.base["specimen"]["contact_length"]
+        depth, half = found["indentation_depth"], found["contact_width"] / 2
+        arc, grids = np.linspace(-1, 1, NODES) * self.grids["arc"][-1], self.grids
+        near = np.abs(arc)
+        skin = {n: np.interp(near, grids["arc"], grids[n]) for n in ("skin_x", "skin_y")}
+        skin["skin_x"] *= np.sign(arc)
+        data: dict[str, Any] = {"force": ("time", load), "leg": ("time", leg)}
+        bands = self._bands(weights, bool(asked.outside))
+        for name in SCALARS:
+            values = found[name] * (asked.modulus if name in STRESSES else 1.0)
+            data[name] = "time", values
+            data[f"{name}_error"] = "time", values * bands[name]
+        wanted = self._receptors(asked)
+        root, width = found["energy_root"][:, wanted], bands["energy_root"][:, wanted]
+        size = asked.modulus * ((load / asked.modulus) ** 2)[:, None]
+        energy, band = size * root**2, size * width * (2 * np.abs(root) + width)
+        data["strain_energy_density"] = ("time", "receptor"), energy
+        data["strain_energy_density_error"] = ("time", "receptor"), band
+        for axis in "xy":
+            name = f"skin_displacement_{axis}"
+            rows = found[name] * depth[:, None]
+            moved = np.array([np.interp(near, grids["arc"], row) for row in rows])
+            data[name] = ("time", "skin_node"), moved * (np.sign(arc) if axis == "x" else 1.0)
+        place = np.abs(skin["skin_x"] + data["skin_displacement_x"][1]) / half[:, None]
+        place = np.where(skin["skin_y"] > 0, place, 2.0)
+        mean = load / (2 * half)
+        for name, rows in (("", found["pressure_shape"]), ("_error", bands["pressure_shape"])):
+            shown = [np.interp(s, PLACES, r, right=0.0) for s, r in zip(place, rows, strict=True)]
+            pressure = np.maximum(shown, 0.0) * mean[:, None]
+            data[f"contact_pressure{name}"] = ("time", "skin_node"), pressure
+        return self._labelled(data, time, arc, skin, wanted, found["estimated_error"], asked)
+
+    def _times(self, asked: Question) -> tuple[np.ndarray, ...]:
+        """Share of the force, time since the press, time and leg of the outputs after the first."""
+        press, hold = self.moments.press, self.moments.hold
+        last = 0.0 if asked.hold is None else asked.hold
+        held_at = np.append(hold[hold < last * (1 - 1e-9)], [last] if last > 0 else [])
+        keys = {k.key: v for k, v in zip(self.knobs, asked.point, strict=True)}
+        leg = self.base["motion"][0]
+        force = keys.get("motion[0].press_to_force", leg["press_to_force"])
+        rate = keys.get("motion[0].rate", leg.get("rate"))
+        top = force / rate if rate else 0.0
+        share = np.concatenate([press, np.ones(len(held_at))])
+        since = np.concatenate([np.zeros(len(press)), held_at])
+        number = np.concatenate([np.zeros(len(press), int), np.ones(len(held_at), int)])
+        return share, since, top * share + since, number
+
+    def _bands(self, weights: np.ndarray, unknown: bool) -> dict[str, np.ndarray]:
+        """Half width of the band of each quantity at weighted moments, relative where it is
+        emulated in its logarithm; NaN where nothing is known.
+        """
+        near = np.maximum(weights, 0.0)
+        near /= near.sum(axis=1, keepdims=True)
+        found = {}
+        for name, group in self.groups.items():
+            if name == "estimated_error":
+                continue
+            band = np.tensordot(near, group.band.reshape(group.shape), 1)
+            band = np.expm1(band) if name in LOGARITHMIC else band
+            found[name] = band * (np.nan if unknown else 1.0)
+        return found
+
+    def _receptors(self, asked: Question) -> list[int]:
+        """Indices of the receptors that a scene asks for."""
+        places = list(zip(self.grids["receptor_depth"], self.grids["receptor_offset"], strict=True))
+        found = []
+        for depth, offset in asked.receptors:
+            near = [
+                k
+                for k, (d, o) in enumerate(places)
+                if abs(d - depth) < 1e-7 and abs(o - abs(offset)) < 1e-7
+            ]
+            if not near:
+                depths = ", ".join(f"{1e6 * d:g}" for d in dict.fromkeys(p[0] for p in places))
+                offsets = ", ".join(f"{1e3 * o:g}" for o in dict.fromkeys(p[1] for p in places))
+                raise SceneError(
+                    f"outputs.receptors: ({1e6 * depth:g} um, {1e3 * offset:g} mm) is outside the "
+                    f"emulator; allowed: depths of {depths} um at offsets of {offsets} mm"
+                )
+            found.append(near[0])
+        return found
+
+    def _labelled(self, data, time, arc, skin, wanted, error, asked: Question) -> xr.Dataset:
+        """The dataset, with the untouched pad as its first output."""
+        started = {}
+        for name, (dims, values) in data.items():
+            rest = np.concatenate([np.zeros((1, *values.shape[1:]), values.dtype), values])
+            unit = UNITS.get(name.removesuffix("_error"), "1")
+            started[name] = dims, rest, {"units": unit}
+        offsets = self.grids["receptor_offset"][wanted]
+        coordinates = {
+            "time": ("time", np.append(0.0, time), {"units": "s"}),
+            "skin_arc": ("skin_node", arc, {"units": "m"}),
+            "skin_x": ("skin_node", skin["skin_x"], {"units": "m"}),
+            "skin_y": ("skin_node", skin["skin_y"], {"units": "m"}),
+            "receptor_depth": ("receptor", self.grids["receptor_depth"][wanted], {"units": "m"}),
+            "receptor_offset": ("receptor", offsets, {"units": "m"}),
+        }
+        attributes = {
+            "title": "fingerpad emulator",
+            "estimated_error": float(error[0]),
+            "outside": "; ".join(asked.outside),
+            "modulus_factor": asked.modulus,
+            "provenance": self.about.get("provenance", ""),
+        }
+        return xr.Dataset(started, coordinates, attributes)
+
+    # --- the file ---------------------------------------------------------------------------------
+
+    def save(self, path: str | Path) -> None:
+        """Write a file that `load_emulator` reads: numpy's npz, without pickle.
+
+        ``about`` is JSON text: format, knobs, scene, shapes, provenance. Arrays are ``press``,
+        ``hold``, ``powers``, ``grid_<name>``, and of each quantity ``<name>_mean``, ``_rows``,
+        ``_coefficients`` and ``_band``.
+        """
+        about = {
+            "format": FORMAT,
+            "knobs": [knob.record() for knob in self.knobs],
+            "base": self.base,
+            "shapes": {name: list(group.shape) for name, group in self.groups.items()},
+            "about": self.about,
+        }
+        arrays = {"press": self.moments.press, "hold": self.moments.hold, "powers": self.powers}
+        arrays |= {f"grid_{name}": grid for name, grid in self.grids.items()}
+        for name, group in self.groups.items():
+            for part in ("mean", "rows", "coefficients", "band"):
+                arrays[f"{name}_{part}"] = getattr(group, part)
+
+        def write(partial: Path) -> None:
+            with partial.open("wb") as file:
+                np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
+
+        write_atomically(path, write)
+
+
+def load_emulator(file: str | Path) -> Emulator:
+    """Read the emulator that a file holds.
+
+    Parameters
+    ----------
+    file
+        As ``fingerpad emulate`` and `Emulator.save` write it.
+
+    Raises
+    ------
+    SceneError
+        It is no such file; one line.
+
+    Examples
+    --------
+    >>> import fingerpad
+    >>> fingerpad.load_emulator("none.emulator")
+    Traceback (most recent call last):
+    fingerpad.documents.SceneError: none.emulator: is not there; allowed: the file of an emulator
+    """
+    try:
+        with np.load(file, allow_pickle=False) as found:
+            arrays = {name: found[name] for name in found.files}
+        about = json.loads(str(arrays.pop("about")))
+        if about["format"] != FORMAT:
+            raise ValueError("another format")
+        groups = {
+            name: Group(
+                tuple(shape),
+                *(arrays[f"{name}_{p}"] for p in ("mean", "rows", "coefficients", "band")),
+            )
+            for name, shape in about["shapes"].items()
+        }
+        grids = {k.removeprefix("grid_"): v for k, v in arrays.items() if k.startswith("grid_")}
+        knobs = [Knob(**knob) for knob in about["knobs"]]
+        moments = Moments(arrays["press"], arrays["hold"])
+        return Emulator(
+            knobs, about["base"], moments, grids, arrays["powers"], groups, about["about"]
+        )
+    except FileNotFoundError:
+        raise SceneError(f"{file}: is not there; allowed: the file of an emulator") from None
+    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):
+        raise SceneError(f"{file}: holds no emulator; allowed: what emulate writes") from None

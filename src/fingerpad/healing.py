@@ -1,0 +1,396 @@
+"""A run that is in trouble, run again with less asked of its method: one thing after the other, the
+cheapest first, within a budget.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.documents import SceneError
+from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.planning.bounds import PlanError, check_memory, micrometres, percent
+from fingerpad.planning.plan import RULES, Plan, external_mesh
+from fingerpad.planning.plan import plan as planned
+from fingerpad.receptors.recovery import ReceptorError
+from fingerpad.results import leg_ends, states_found
+from fingerpad.scenes.scene import Bar, Cylinder, Line, Punch, Relaxing, Sampled, Scene, load_scene
+from fingerpad.simulation import solve
+from fingerpad.specimen import MeshError, OutlineError, counted
+from fingerpad.specimen.pad import PadMesh
+
+MOST_FACTORISATIONS = 10.0
+MOST_CUTS = 2
+"""Matrices factorised, mean of the states, and cuts of steps above which a run labours."""
+FINER = (1.4, 2.0)
+"""By how much shorter the edges of a built mesh are made; the first doubles its nodes."""
+ITERATIONS = 25
+LEAST_ITERATIONS = 400
+"""Newton iterations of a planned state, and of a whole run, after which a relaxed run is given up:
+some eight times what an easy one takes.
+"""
+TIP = 2.0
+"""Edges of the skin that the radius of a relaxed edge or tip is long."""
+FINE, LABOURS, DOUBTS, BROKE_OFF = range(4)
+WORDS = ("ran well", "laboured", "doubted itself", "broke off")
+_COMPARED = {
+    "depth": "indentation_depth",
+    "force": "force",
+    "width": "contact_width",
+    "stored energy": "stored_energy",
+}
+_TOLD = 5e-3
+"""Changes less than this share are none worth telling."""
+
+
+@dataclass(frozen=True)
+class Try:
+    """One run: how it was asked for and how it ended, 0 (well) to 3 (broke off)."""
+
+    scene: Scene
+    plan: Plan
+    rank: int
+    history: Any  # xr.Dataset; None where no step had converged
+    problem: NonConvergence | None = None
+
+    @property
+    def advice(self) -> str:
+        """What its message says to try."""
+        if self.problem is not None:
+            return self.problem.advice
+        if self.rank == DOUBTS:
+            return "; ".join(json.loads(self.history.attrs["doubts"]))
+        return "more steps, a finer mesh"
+
+    @property
+    def why(self) -> str:
+        """What was the matter, in words."""
+        if self.problem is not None:
+            return self.problem.reason
+        if self.rank == DOUBTS:
+            return json.loads(self.history.attrs["doubts"])[0].partition(":")[0]
+        cuts, factors = int(self.history.cutbacks.sum()), _factors(self.history)
+        many = f"{cuts} cuts of steps" if cuts > MOST_CUTS else ""
+        return many or f"{factors:.0f} factorisations a state"
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """A scene and plan with something relaxed; ``said``: what, in words."""
+
+    said: str
+    scene: Scene
+    plan: Plan
+
+
+def simulate(
+    scene: Scene | str | Path | Mapping[str, Any],
+    plan: Plan | None = None,
+    mesh: PadMesh | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+    fields: bool = False,
+) -> xr.Dataset:
+    """Simulate a scene.
+
+    A run that misses the tolerance it was asked for is refined and run again, a few times at most,
+    unless the scene says ``once`` or a mesh is given. A run that breaks off, labours or doubts
+    itself is run again with something relaxed that the scene leaves to the plan, unless the scene
+    says ``on_trouble: stop``; the history's notes say what was relaxed and what that changed. The
+    history describes the last run.
+
+    Parameters
+    ----------
+    scene : Scene, path or dict
+        The scene, checked or as a document.
+    plan : Plan, optional
+        How it is solved (default: ``fingerpad.plan(scene)``).
+    mesh : PadMesh, optional
+        Mesh of the whole pad (default: built or read as the plan says).
+    progress : callable, optional
+        Called after each step with a dict of time_s, end_time_s, contact_width_mm, iterations,
+        cutbacks; without it a notebook shows a bar.
+    fields : bool
+        Whether to keep full fields of strain energy, strain and stress, at the scene's snapshots or
+        of the last state.
+
+    Returns
+    -------
+    xarray.Dataset
+        The history of the whole pad, in SI (see :mod:`fingerpad.results`).
+
+    Raises
+    ------
+    SceneError
+        The scene is wrong.
+    PlanError, MeshError, OutlineError
+        It cannot be planned or meshed; nothing was solved.
+    ReceptorError
+        A receptor lies outside the soft tissue.
+    NonConvergence
+        A step failed for good, whatever was relaxed. Its ``dataset`` is the history of the first
+        run up to the last converged step; a KeyboardInterrupt has the same, if a step had
+        converged.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> history = simulate(press)
+    >>> round(1e3 * float(history.contact_width[-1]), 1)
+    2.7
+    >>> history.fingerpad.force_N.values.round(3).tolist()
+    [0.0, 0.196]
+    """
+    scene = load_scene(scene)
+
+    def run(scene: Scene, how: Plan) -> Try:
+        try:
+            history = solve(scene, how, mesh, progress, fields)
+        except NonConvergence as problem:
+            return Try(scene, how, BROKE_OFF, getattr(problem, "dataset", None), problem)
+        return Try(scene, how, _rank(history), history)
+
+    first = run(scene, plan or planned(scene))
+    how, best = scene.relaxing, first
+    tried: list[str] = []
+    if how is not None and first.rank > FINE:
+        best, tried = _healed(first, how, mesh, run)
+    if best.problem is not None:
+        best.problem.tried = tuple(tried)
+        raise best.problem
+    return _told(first, best, tried)
+
+
+def _healed(
+    first: Try, how: Relaxing, mesh: PadMesh | None, run: Callable[[Scene, Plan], Try]
+) -> tuple[Try, list[str]]:
+    """The best of a run in trouble and of the relaxed ones; what was tried, in words."""
+    tried: list[str] = []
+    best, left = first, how.budget * _work(first.plan)
+    for remedy in remedies(first, how, mesh):
+        if _work(remedy.plan) > left:
+            tried.append(f"{remedy.said} (not tried: it would cost too much)")
+            continue
+        left -= _work(remedy.plan)
+        try:
+            check_memory(remedy.scene, remedy.plan.nodes, remedy.plan.outputs, RULES)
+            found = run(remedy.scene, _saying(remedy))
+        except KeyboardInterrupt as stop:
+            if best.problem is None:
+                vars(stop)["dataset"] = best.history  # the run before is whole
+            raise
+        except (MeshError, OutlineError, PlanError, ReceptorError) as reason:
+            tried.append(f"{remedy.said} (not tried: {reason})")
+            continue
+        tried.append(remedy.said)
+        if found.rank < best.rank:
+            best = found
+        if best.rank == FINE:
+            break
+    return best, tried
+
+
+def _saying(remedy: Remedy) -> Plan:
+    """The plan of a remedy, which says what is relaxed and does not labour for ever."""
+    relaxed, most = remedy.plan.relaxed, max(ITERATIONS * remedy.plan.steps, LEAST_ITERATIONS)
+    said = (*relaxed.said, remedy.said)
+    return replace(remedy.plan, relaxed=replace(relaxed, said=said, most_iterations=most))
+
+
+def _rank(history: xr.Dataset) -> int:
+    """How a completed run went."""
+    if json.loads(history.attrs.get("doubts", "[]")):
+        return DOUBTS
+    labours = history.cutbacks.sum() > MOST_CUTS or _factors(history) > MOST_FACTORISATIONS
+    return LABOURS if labours else FINE
+
+
+def _factors(history: xr.Dataset) -> float:
+    """Matrices factorised, mean of the states that were found."""
+    factorisations = json.loads(history.attrs["cost"])["factorisations"]
+    return factorisations / max(states_found(history), 1)
+
+
+def _work(plan: Plan) -> float:
+    """What a plan costs, in nodes times steps: seconds would differ from machine to machine."""
+    return float(plan.nodes * plan.steps)
+
+
+# --- what can be relaxed, the cheapest first ------------------------------------------------------
+
+
+def remedies(first: Try, how: Relaxing, mesh: PadMesh | None = None) -> Iterator[Remedy]:
+    """What the message of a run says to relax: what only costs, the cheapest first; then what
+    changes the surface, of which a run that only labours has no need.
+    """
+    scene, plan, everything = first.scene, first.plan, how.relax == "everything"
+    costing: list[Remedy] = []
+    if "step" in first.advice:
+        costing += _steps(scene, plan, everything)
+    if mesh is None and "mesh" in first.advice:
+        costing += _meshes(scene, plan, everything)
+    if "round-off" in first.advice or "singular" in first.why:
+        costing += _solver(scene, plan)
+    yield from sorted(costing, key=lambda remedy: round(_work(remedy.plan) / _work(plan)))
+    if first.rank == BROKE_OFF or "fillet" in first.advice:
+        yield from _blunter(scene, plan, everything)
+
+
+def _solver(scene: Scene, plan: Plan) -> Iterator[Remedy]:
+    if not plan.relaxed.precise:
+        relaxed = replace(plan.relaxed, precise=True)
+        said = "linear solver: factors in double precision"
+        yield Remedy(said, scene, replace(plan, relaxed=relaxed))
+
+
+def _steps(scene: Scene, plan: Plan, everything: bool) -> Iterator[Remedy]:
+    if scene.by_hand.steps and not everything:
+        return
+    for pieces, said in ((2, "steps: half as long"), (4, "steps: a quarter as long")):
+        yield Remedy(said, scene, _cut(plan, pieces))
+
+
+def _cut(plan: Plan, pieces: int) -> Plan:
+    """A plan with so many times the steps."""
+    return replace(
+        plan,
+        steps_per_leg=pieces * plan.steps_per_leg,
+        slide_step=plan.slide_step and plan.slide_step / pieces,
+        steps=pieces * plan.steps,
+        outputs=pieces * plan.outputs,
+        relaxed=replace(plan.relaxed, pieces=pieces * plan.relaxed.pieces),
+    )
+
+
+def _meshes(scene: Scene, plan: Plan, everything: bool) -> Iterator[Remedy]:
+    by_hand = scene.by_hand
+    if (by_hand.skin_edge or by_hand.element) and not everything:
+        return
+    if plan.mesh_size is None:
+        yield from _own_meshes(scene, plan)
+        return
+    for finer in FINER:
+        size = plan.mesh_size.coarser(1 / finer)
+        try:
+            nodes, smallest = counted(scene.specimen, size, plan.parts(scene).ridges)
+        except MeshError:
+            return
+        following = replace(
+            plan,
+            mesh_size=size,
+            nodes=nodes // 2 + 1 if plan.parts(scene).half else nodes,
+            smallest_edge=smallest,
+            contact_edge=plan.contact_edge / finer,
+            estimated_error=plan.estimated_error / finer,
+        )
+        yield Remedy(f"mesh: edges {finer:g} times as fine", scene, following)
+
+
+def _own_meshes(scene: Scene, plan: Plan) -> Iterator[Remedy]:
+    """Of an external mesh: linear quads raised, or all elements divided, inside its geometry."""
+    external = external_mesh(scene)
+    if external is None:
+        return
+    if external.element == "quad4" and plan.element == "Q1P0":
+        nodes = round(plan.nodes * len(external.raised().points) / len(external.points))
+        raised = replace(plan, element="Q2P1", nodes=nodes)
+        yield Remedy("mesh: linear quads raised to quadratic ones", scene, raised)
+    halvings = replace(plan.relaxed, halvings=plan.relaxed.halvings + 1)
+    following = replace(
+        plan,
+        nodes=4 * plan.nodes,
+        contact_edge=plan.contact_edge / 2,
+        smallest_edge=plan.smallest_edge / 2,
+        estimated_error=plan.estimated_error / 2,
+        relaxed=halvings,
+    )
+    yield Remedy("mesh: each element divided into four", scene, following)
+
+
+def _blunter(scene: Scene, plan: Plan, everything: bool) -> Iterator[Remedy]:
+    """A rounding as large as the mesh can resolve, on a true edge or a tip finer than the nodes."""
+    radius = TIP * plan.contact_edge
+    for said, changes in _roundings(scene, radius, everything):
+        try:
+            blunter = scene.varied(changes)
+            following = planned(blunter)
+        except (SceneError, PlanError, MeshError):
+            continue
+        following = replace(
+            following,
+            steps_per_leg=plan.steps_per_leg,
+            slide_step=plan.slide_step,
+            relaxed=plan.relaxed,
+        )
+        yield Remedy(said, blunter, following)
+
+
+def _roundings(
+    scene: Scene, radius: float, everything: bool
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    stimulus, size = scene.stimulus, f"{micrometres(radius)} um"
+    if isinstance(stimulus, Bar | Punch):
+        wide = stimulus.width if isinstance(stimulus, Bar) else stimulus.diameter
+        radius = min(radius, wide / 2)
+        if stimulus.fillet < radius and (everything or stimulus.fillet == 0):
+            said = f"stimulus: a fillet of {micrometres(radius)} um on its edges"
+            yield said, {"stimulus.fillet": radius}
+    elif isinstance(stimulus, Line) and stimulus.fillet < radius:
+        blunt = Cylinder(curvature=1 / radius)
+        yield f"stimulus: a tip of radius {size}", {"stimulus": blunt}
+    elif isinstance(stimulus, Cylinder) and everything and stimulus.curvature * radius > 1:
+        yield f"stimulus: a tip of radius {size}", {"stimulus.curvature": 1 / radius}
+    elif isinstance(stimulus, Sampled) and (everything or stimulus.smooth == "auto"):
+        cut_off = 4 * radius
+        said = f"stimulus: its profile smoothed at {micrometres(cut_off)} um"
+        yield said, {"stimulus.smooth": cut_off}
+
+
+# --- what is told of it ---------------------------------------------------------------------------
+
+
+def _told(first: Try, best: Try, tried: list[str]) -> xr.Dataset:
+    """The history of the best run, with what was relaxed in its notes and attributes."""
+    history = best.history
+    if not tried:
+        return history
+    notes = json.loads(history.attrs["notes"])
+    trouble = f"{WORDS[first.rank]} ({first.why})"
+    if best is first:
+        notes.append(f"the run {trouble}; relaxed in vain: {', '.join(tried)}")
+    else:
+        kept = best.plan.relaxed.said[-1]
+        changed = _changed(first, history)
+        rest = "" if best.rank == FINE else f"; it still {WORDS[best.rank]} ({best.why})"
+        notes.append(f"as planned the run {trouble}: relaxed {kept}; {changed}{rest}")
+    relaxed = {
+        "trouble": WORDS[first.rank],
+        "why": first.why,
+        "tried": tried,
+        "kept": "" if best is first else best.plan.relaxed.said[-1],
+        "ended": WORDS[best.rank],
+    }
+    history.attrs |= {"notes": json.dumps(notes), "relaxed": json.dumps(relaxed)}
+    return history
+
+
+def _changed(first: Try, history: xr.Dataset) -> str:
+    """What the relaxed run ends with that is not what the first one did."""
+    if first.problem is not None:
+        return f"it had reached t = {first.problem.time:.6g} s"
+    before, after = (leg_ends(each).isel(time=-1) for each in (first.history, history))
+    said = []
+    for word, name in _COMPARED.items():
+        old, new = float(before[name]), float(after[name])
+        if abs(new - old) > _TOLD * max(abs(old), abs(new), np.finfo(float).tiny):
+            said.append(f"the {word} by {percent(abs(new - old) / max(abs(old), 1e-300))}")
+    return f"that changed {', '.join(said)}" if said else "that changed nothing by half a per cent"

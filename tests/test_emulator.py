@@ -1,0 +1,288 @@
+"""Emulators: against histories of known formulas, against the solver; their files, refusals and
+page.
+"""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import fingerpad
+from fingerpad.cli import main
+from fingerpad.emulator.basis import basis, cubic_weights, exponents
+from fingerpad.emulator.model import load_emulator
+from fingerpad.sweeps.design import Design
+from fingerpad.sweeps.engine import lay_out
+from fingerpad.sweeps.language import load_sweep
+
+pytestmark = pytest.mark.unit
+
+SCENE = {
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}],
+    "outputs": {"receptors": {"depths": ["600 um", "915 um"], "offsets": ["0 mm", "1 mm"]}},
+    "accuracy": "draft",
+}
+OVER = {
+    "stimulus.curvature": {"range": ["50 1/m", "1300 1/m"]},
+    "motion[0].press_to_force": {
+        "range": ["5 gf", "60 gf"],
+        "spacing": "logarithmic",
+        "name": "force",
+    },
+    "motion[0].rate": {"range": ["20 gf/s", "80 gf/s"], "spacing": "logarithmic"},
+}
+GF, LENGTH = 9.80665e-3, 11.4e-3
+RIGHT = np.linspace(0, 6e-3, 301)
+
+
+def truth(curvature, force, rate, time):
+    """Depth (m), half width (m) and middle pressure (Pa) of a made-up pad at a time (s)."""
+    top = force / rate
+    now = force * min(time / top, 1.0)
+    creep = 1 + 0.1 * (1 - np.exp(-max(time - top, 0) / 0.4)) + 0.02 * np.log(rate)
+    depth = 1e-3 * (now / 0.2) ** 0.6 * (1 + curvature / 2000) * creep
+    half = 2e-3 * (now / 0.2) ** 0.4 / (1 + curvature / 500) * creep
+    return depth, half, 1.5 * now / LENGTH / (2 * half) if half else 0.0
+
+
+def history(scene):
+    """A history of the made-up pad, in the form of the solver's."""
+    press, hold = scene.motion
+    force, rate, curvature = press.press_to_force, press.rate, scene.stimulus.curvature
+    top = force / rate
+    after = np.expm1(np.linspace(0, np.log1p(hold.hold / 0.05), 16))[1:] * 0.05
+    time = np.concatenate([[0], top * np.arange(1, 13) / 12, top + after])
+    depth, half, middle = np.array([truth(curvature, force, rate, t) for t in time]).T
+    load = np.minimum(time / top, 1) * force / LENGTH
+    x = np.concatenate([-RIGHT[:0:-1], RIGHT])
+    with np.errstate(all="ignore"):
+        share = np.nan_to_num(np.abs(x) / half[:, None], nan=9, posinf=9)
+    receptors = [(d, o) for d in (600e-6, 915e-6) for o in (0.0, 1e-3)]
+    energy = np.array([0.05 * middle * np.exp(-o / 2e-3) * 600e-6 / d for d, o in receptors]).T
+    outputs, skin = ("time",), ("time", "skin_node")
+    data = {
+        "force": (outputs, load),
+        "leg": (outputs, (time > top * (1 + 1e-9)).astype(int)),
+        "indentation_depth": (outputs, depth),
+        "contact_width": (outputs, 2 * half),
+        "peak_pressure": (outputs, middle),
+        "centre_pressure": (outputs, middle),
+        "contact_pressure": (skin, middle[:, None] * np.clip(1 - share**2, 0, None)),
+        "skin_displacement_x": (skin, np.zeros((len(time), len(x)))),
+        "skin_displacement_y": (skin, -depth[:, None] * np.exp(-np.abs(x) / 2e-3)),
+        "strain_energy_density": (("time", "receptor"), energy),
+    }
+    places = {
+        "time": time,
+        "skin_x": ("skin_node", x),
+        "skin_y": ("skin_node", np.full(len(x), 6e-3)),
+        "skin_arc": ("skin_node", x),
+        "receptor_depth": ("receptor", [d for d, _ in receptors]),
+        "receptor_offset": ("receptor", [o for _, o in receptors]),
+    }
+    return xr.Dataset(data, places, {"estimated_error": 0.02 + 1e-5 * curvature})
+
+
+def made_up(folder, samples, seed=3):
+    """The folder of a sweep whose histories are the made-up pad's."""
+    keys = {"design": "sobol", "samples": samples, "seed": seed, "histories": True}
+    read = load_sweep({"over": OVER, **keys}, "made_up", fingerpad.load_scene(SCENE))
+    lay_out(read, folder, 1)
+    (folder / "histories").mkdir()
+    found = json.loads((folder / "design.json").read_text())
+    for key, scene in zip(found["keys"], Design(read), strict=True):
+        history(scene).to_netcdf(folder / "histories" / f"{key}.nc")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return made_up(tmp_path_factory.mktemp("sweep") / "made_up", 128)
+
+
+@pytest.fixture(scope="module")
+def pad(folder):
+    return fingerpad.emulate(folder)
+
+
+def scene(curvature=210.0, force=20.0, rate=40.0, hold=1.0, **more):
+    """A scene inside the box; curvature 1/m, force gf, rate gf/s, hold s."""
+    motion = [{"press_to_force": f"{force!r} gf", "rate": f"{rate!r} gf/s"}]
+    motion += [{"hold": f"{hold!r} s"}] * (hold > 0)
+    stimulus = {"shape": "cylinder", "curvature": f"{curvature!r} 1/m"}
+    return SCENE | {"stimulus": stimulus, "motion": motion} | more
+
+
+def inside(count, seed=0):
+    """Random scenes inside the box, as (curvature, force, rate, hold)."""
+    u = np.random.default_rng(seed).random((count, 4))
+    low, high = np.array([[50, 5, 20, 0.0], [1300, 60, 80, 2.0]])
+    return (low + u * (high - low)).round(4).tolist()
+
+
+# --- the mathematics ------------------------------------------------------------------------------
+
+
+def test_a_basis_of_degree_three_holds_every_cubic():
+    rng, powers = np.random.default_rng(1), exponents(3, 3)
+    x = rng.uniform(-1, 1, (60, 3))
+    y = 1 + x[:, 0] ** 3 - 2 * x[:, 0] * x[:, 1] * x[:, 2] + x[:, 2] ** 2
+    found = np.linalg.lstsq(basis(x, powers), y, rcond=None)[0]
+    at = rng.uniform(-1, 1, (9, 3))
+    exact = 1 + at[:, 0] ** 3 - 2 * at[:, 0] * at[:, 1] * at[:, 2] + at[:, 2] ** 2
+    assert len(powers) == 20
+    assert basis(at, powers) @ found == pytest.approx(exact, abs=1e-12)
+
+
+def test_cubics_in_time_are_of_fourth_order():
+    """Halving the steps divides the error by 16."""
+    at, errors = np.linspace(0, 2, 301), []
+    for count in (11, 21, 41):
+        grid = np.linspace(0, 2, count)
+        errors.append(np.abs(cubic_weights(grid, at) @ np.exp(grid) - np.exp(at)).max())
+    assert errors[-1] < 3e-6
+    assert np.log2(errors[0] / errors[1]) > 3.6 and np.log2(errors[1] / errors[2]) > 3.6
+
+
+# --- answers --------------------------------------------------------------------------------------
+
+
+def test_unseen_scenes_of_a_known_pad_are_found(pad):
+    worst = 0.0
+    for curvature, force, rate, hold in inside(40):
+        found = pad.predict(scene(curvature, force, rate, hold))
+        depth, half, middle = truth(curvature, force * GF, rate * GF, found.time.values[-1])
+        last = found.isel(time=-1)
+        ratios = last.indentation_depth / depth, last.contact_width / half / 2
+        ratios += (last.peak_pressure / middle,)
+        worst = max(worst, *(abs(float(r) - 1) for r in ratios))
+        assert found.time.values[-1] == pytest.approx(force / rate + hold)
+        assert last.estimated_error == pytest.approx(0.02 + 1e-5 * curvature, rel=5e-3)
+    assert worst < 5e-3
+
+
+def test_more_scenes_make_it_better(tmp_path, pad):
+    few = fingerpad.emulate(made_up(tmp_path / "few", 20))
+    points = np.array(inside(50, seed=5))[:, :3] * [1, GF, GF]
+    exact = np.array([truth(*p, p[1] / p[2] + 2.0)[1] for p in points])
+    errors = [
+        np.abs(of.values(points, ("contact_width",))["contact_width"][:, -1] / 2 / exact - 1).max()
+        for of in (few, pad)
+    ]
+    assert errors[1] < 1.5e-3 and errors[1] < 0.2 * errors[0]
+
+
+def test_the_band_holds_what_it_says_of_unseen_scenes(tmp_path):
+    """Of few scenes, so that the band is wide; 95 % are asked for, 85 % are a mutant's limit."""
+    few, held = fingerpad.emulate(made_up(tmp_path / "few", 48)), []
+    for curvature, force, rate, hold in inside(60, seed=7):
+        found = few.predict(scene(curvature, force, rate, hold)).isel(time=-1)
+        depth, half, _ = truth(curvature, force * GF, rate * GF, force / rate + hold)
+        held.append(abs(found.indentation_depth - depth) <= found.indentation_depth_error)
+        held.append(abs(found.contact_width - 2 * half) <= found.contact_width_error)
+    assert np.mean(held) > 0.85
+    assert float(found.contact_width_error) < 0.2 * float(found.contact_width)
+
+
+def test_a_moving_edge_does_not_smear(pad):
+    """The pressure is the parabola of the made-up pad, which ends at its own edge."""
+    found = pad.predict(scene(curvature=700.0)).isel(time=-1)
+    x = (found.skin_x + found.skin_displacement_x).values
+    _, half, middle = truth(700.0, 20 * GF, 40 * GF, 1.5)
+    exact = middle * np.clip(1 - (x / half) ** 2, 0, None)
+    assert np.abs(found.contact_pressure.values - exact).max() < 0.02 * middle
+    assert (found.contact_pressure.values[np.abs(x) > 1.02 * half] == 0).all()
+
+
+def test_the_answer_is_a_history_that_receptors_respond_to(pad):
+    found = pad.predict(scene())
+    sent = fingerpad.respond(found)
+    assert found.force.values[-1] == pytest.approx(20 * GF / LENGTH)
+    assert found.indentation_depth.attrs["units"] == "m"
+    assert sent.impulse_rate.shape[-1] == 4 and float(sent.impulses[0, 0]) > 0
+
+
+def test_a_factor_of_all_moduli_is_exact(pad):
+    """By the solver: twice the moduli, force and rate give the same depth and twice the energy; and
+    the emulator knows it.
+    """
+    stiff = {
+        name: {"youngs_modulus": f"{2 * e} MPa", "poisson_ratio": 0.48}
+        for name, e in {"epidermis": 0.15, "dermis": 0.015, "fat": 0.015}.items()
+    }
+    more = {"specimen": {"layers": stiff, "moduli": "instantaneous"}}
+    both = scene(hold=0.0), scene(force=40.0, rate=80.0, hold=0.0, **more)
+    for of in (fingerpad.simulate, pad.predict):
+        soft, hard = (of(s).isel(time=-1) for s in both)
+        assert float(hard.indentation_depth) == pytest.approx(float(soft.indentation_depth))
+        energy = soft.strain_energy_density.values
+        assert hard.strain_energy_density.values == pytest.approx(2 * energy, rel=1e-5)
+
+
+# --- refusals and files ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("changed", "key"),
+    [
+        (scene(force=90.0), "motion[0].press_to_force"),
+        (scene(hold=2.5), "motion[1].hold"),
+        (scene(friction=0.3), "friction"),
+        (scene() | {"stimulus": {"shape": "line"}}, "stimulus"),
+        (scene() | {"motion": [{"press_to_depth": "1 mm", "speed": "2 mm/s"}]}, "motion"),
+        (scene(specimen={"outline": {"apex_radius": "9 mm"}}), "specimen.outline.apex_radius"),
+        (scene(specimen={"layers": {"fat": {"youngs_modulus": "9 kPa"}}}), "specimen.layers.fat"),
+        (scene(outputs={"receptors": {"depths": ["700 um"]}}), "outputs.receptors"),
+    ],
+)
+def test_what_was_not_simulated_is_refused(pad, changed, key):
+    with pytest.raises(fingerpad.SceneError) as caught:
+        pad.predict(changed)
+    text = str(caught.value)
+    assert key in text and "; allowed: " in text and "\n" not in text
+
+
+def test_outside_the_box_must_be_asked_for_and_has_no_band(pad):
+    found = pad.predict(scene(force=70.0), extrapolate=True)
+    assert "press_to_force" in found.attrs["outside"]
+    assert np.isfinite(found.indentation_depth.values).all()
+    assert np.isnan(found.indentation_depth_error.values[1:]).all()
+
+
+def test_a_file_gives_the_same_answers(pad, tmp_path):
+    pad.save(tmp_path / "pad.emulator")
+    again = load_emulator(tmp_path / "pad.emulator")
+    xr.testing.assert_identical(again.predict(scene()), pad.predict(scene()))
+    assert "code_sha256" in again.about["provenance"]
+    with np.load(tmp_path / "pad.emulator", allow_pickle=False) as found:
+        assert json.loads(str(found["about"]))["format"] == 1
+
+
+def test_the_commands_write_and_refuse(folder, tmp_path, capsys):
+    file, page = tmp_path / "pad.emulator", tmp_path / "explorer.html"
+    assert main(["emulate", str(folder), "--out", str(file)]) == 0
+    assert "contact width" in capsys.readouterr().out
+    assert main(["explore", str(file), "--out", str(page)]) == 0
+    assert page.stat().st_size < 3e6
+    capsys.readouterr()
+    (tmp_path / "bad").write_bytes(b"PK\x03\x04 nothing")
+    for words in (
+        ["emulate", str(tmp_path), "--out", str(tmp_path / "x")],
+        ["explore", str(tmp_path / "bad"), "--out", str(tmp_path / "x")],
+        ["explore", str(tmp_path / "none"), "--out", str(tmp_path / "x")],
+    ):
+        assert main(words) == 2
+        said = capsys.readouterr().err
+        assert said.count("\n") == 1 and "; allowed: " in said and words[1] in said
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_sweep_without_histories_is_refused(tmp_path):
+    read = load_sweep(
+        {"over": OVER, "design": "sobol", "samples": 4}, "bare", fingerpad.load_scene(SCENE)
+    )
+    lay_out(read, tmp_path / "bare", 1)
+    with pytest.raises(fingerpad.SceneError, match="histories: true"):
+        fingerpad.emulate(tmp_path / "bare")

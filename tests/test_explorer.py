@@ -1,0 +1,162 @@
+"""The page of an emulator in a browser: its numbers are Python's, and nothing leaves it."""
+
+import html
+import json
+import re
+import subprocess
+
+import pytest
+import yaml
+
+import fingerpad
+from fingerpad.emulator.explorer import page
+from test_browser import BROWSER, PHONE, walk
+from test_emulator import made_up
+
+pytestmark = pytest.mark.browser
+
+DRIVE = """<script>
+const found = [];
+const knobs = [...document.querySelectorAll("input[type=range]")];
+function look(what) {
+  const answered = answer(state), last = answered.indentation_depth.length - 1;
+  found.push({ what, scene: document.getElementById("scene").textContent, rows: rows(answered),
+    shown: [...document.querySelectorAll("#numbers td:nth-child(2)")].map(cell => cell.textContent),
+    impulses: impulses(answered.rate), outside: answered.outside.length,
+    time: answered.time[last], error: answered.estimated_error,
+    mute: [...document.querySelectorAll("svg")].filter(e => !e.getAttribute("aria-label")).length,
+    broken: document.querySelector("main").innerHTML.includes("NaN"), link: link() });
+}
+look("start");
+for (const knob of knobs) {
+  const before = knob.value;
+  for (const value of [knob.min, knob.max]) {
+    knob.value = value;
+    knob.dispatchEvent(new Event("input"));
+    look(knob.id + " " + value);
+  }
+  knob.value = before;
+  knob.dispatchEvent(new Event("input"));
+}
+const began = performance.now();
+for (let k = 0; k < 20; k++) draw();
+const milliseconds = (performance.now() - began) / 20;
+for (const button of document.querySelectorAll("#surfaces button")) {
+  button.click();
+  look(button.textContent);
+}
+const saved = link();
+state.hold = 0.1;
+location.hash = saved;
+readLink();
+const linked = link() === saved;
+const result = document.createElement("pre");
+result.id = "result";
+result.textContent = JSON.stringify({ found, linked, milliseconds, knobs: knobs.length,
+  unnamed: knobs.filter(k => !k.labels.length).length });
+document.body.append(result);
+</script></body>"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """An emulator, its page, and what the browser found while every knob was turned."""
+    if BROWSER is None:
+        pytest.skip("no chromium here: apt-get install chromium")
+    folder = tmp_path_factory.mktemp("explorer")
+    pad = fingerpad.emulate(made_up(folder / "sweep", 64))
+    (folder / "site").mkdir()
+    (folder / "site/explorer.html").write_text(page(pad), encoding="utf-8")
+    driven = folder / "driven.html"
+    driven.write_text(page(pad).replace("</body>", DRIVE), encoding="utf-8")
+    options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+    options += ["--enable-logging=stderr", f"--user-data-dir={folder / 'profile'}", "--dump-dom"]
+    run = subprocess.run(
+        [BROWSER, *options, driven.as_uri()], capture_output=True, text=True, timeout=300
+    )
+    text = re.search(r'<pre id="result">(.*?)</pre>', run.stdout, re.S)
+    assert text, run.stderr[-2000:]
+    console = re.findall(r"CONSOLE[^\]]*\] (.*)", run.stderr)
+    return pad, folder, json.loads(html.unescape(text[1])), console
+
+
+def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
+    """What the page says of a scene, and what Python says of the scene that the page gives."""
+    pad, _, result, _ = made
+    looks = [look for look in result["found"] if not look["outside"]]
+    assert result["knobs"] == 5 and len(looks) > 12
+    for look in looks:
+        scene = yaml.safe_load(look["scene"])
+        scene["outputs"] = {"receptors": {"depths": ["600 um", "915 um"]}}
+        found = pad.predict(scene)
+        last = found.isel(time=-1)
+        energies = iter(range(2))
+        assert look["time"] == pytest.approx(float(found.time[-1]), rel=1e-9)
+        assert look["error"] == pytest.approx(found.attrs["estimated_error"], rel=1e-5)
+        for row, shown in zip(look["rows"], look["shown"], strict=True):
+            scale = {"mm": 1e3, "kPa": 1e-3, "Pa": 1.0}[row["unit"]]
+            at = next(energies) if row["name"] == "strain_energy_density" else ...
+            for value, name in ((row["value"], ""), (row["band"], "_error")):
+                exact = scale * float(last[row["name"] + name].values[at])
+                assert value == pytest.approx(exact, rel=1e-5), (look["what"], row["label"])
+            assert float(shown.split()[0]) == pytest.approx(row["value"], rel=6e-4)
+        sent = fingerpad.respond(found)
+        times = sent.impulse_time.values[0, 0, : int(sent.impulses[0, 0])]
+        assert look["impulses"] == pytest.approx(times.tolist(), rel=1e-5)
+
+
+def test_the_page_says_where_nothing_is_known(made):
+    for look in made[2]["found"]:
+        assert (look["shown"][0] == "\u2013") == bool(look["outside"])
+
+
+def test_every_picture_has_words_and_no_number_is_missing(made):
+    for look in made[2]["found"]:
+        assert not look["mute"] and not look["broken"], look["what"]
+    assert made[2]["unnamed"] == 0
+
+
+def test_a_link_keeps_the_knobs(made):
+    assert made[2]["linked"]
+
+
+def test_the_console_is_silent_and_nothing_leaves_the_page(made):
+    _, folder, _, console = made
+    text = (folder / "site/explorer.html").read_text(encoding="utf-8")
+    assert not console
+    assert "default-src 'none'" in text
+    assert set(re.findall(r"https?://[^\"' ]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_it_fits_a_phone(made, tmp_path):
+    found, console = walk(made[1] / "site", ["/explorer.html"], PHONE, tmp_path)
+    assert found["/explorer.html"]["width"] <= PHONE and not console
+
+
+def test_colours_can_be_read_on_both_grounds():
+    """Text 4.5 to 1, lines 3 to 1 (WCAG 2.2, 1.4.3 and 1.4.11)."""
+    css = page_css()
+    for block in re.findall(r":root \{(.*?)\}", css, re.S):
+        colours = dict(re.findall(r"--(\w+): (#[0-9a-f]{6});", block))
+        for name, least in {"ink": 7, "quiet": 4.5, "mark": 4.5, "line": 3, "skin": 3}.items():
+            assert contrast(colours[name], colours["back"]) >= least, name
+        for name in ("second", "third", "fourth"):
+            assert contrast(colours[name], colours["back"]) >= 3, name
+
+
+def page_css():
+    from importlib.resources import files
+
+    return (files("fingerpad.emulator") / "page.css").read_text(encoding="utf-8")
+
+
+def contrast(one, other):
+    """The ratio of WCAG of two colours such as #a0b0c0."""
+
+    def luminance(colour):
+        parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        r, g, b = (p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts)
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+    low, high = sorted(map(luminance, (one, other)))
+    return (high + 0.05) / (low + 0.05)

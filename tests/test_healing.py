@@ -1,0 +1,227 @@
+"""A run in trouble relaxes what the plan chose, within what the scene insists on and its budget;
+a run without trouble is left as it is.
+"""
+
+import json
+from functools import partial
+
+import numpy as np
+import pytest
+
+from cysyk1999.studies.common.meshes import corners_only, split
+from fingerpad import NonConvergence, load_scene, plan, simulate, simulation, summary
+from fingerpad.cli import main
+from fingerpad.healing import Try, remedies
+from fingerpad.mechanics import stepping
+from fingerpad.simulation import solve
+from fingerpad.specimen import halved, mesh_for
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.quality import check_orientation
+
+PRESS = {
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf"}],
+    "accuracy": "draft",
+}
+EDGE = PRESS | {"stimulus": {"shape": "bar", "width": "2 mm"}}
+
+
+def starve(monkeypatch, iterations, halvings=0):
+    """Let Newton's method have few iterations, and steps be cut so often."""
+    few = partial(stepping.NewtonSettings, max_iterations=iterations)
+    monkeypatch.setattr(simulation, "NewtonSettings", few)
+    monkeypatch.setattr(stepping, "SNAP_ITERATIONS", 0)
+    monkeypatch.setattr(stepping, "MAX_HALVINGS", halvings)
+
+
+def in_trouble(document, why="an element would turn inside out", advice=stepping.FOLDED):
+    """A run that broke off, without running it."""
+    scene = load_scene(document)
+    return Try(scene, plan(scene), 3, None, NonConvergence(0.0, why, advice))
+
+
+def kinds(document, **problem):
+    """What would be relaxed of a scene, by the first word of it."""
+    first = in_trouble(document, **problem)
+    found = remedies(first, first.scene.relaxing)
+    return [remedy.said.partition(":")[0] for remedy in found]
+
+
+MORE = {"advice": "more steps, a finer mesh, or depth instead of force control"}
+
+
+# -- a run without trouble ---
+
+
+def test_a_run_without_trouble_is_left_as_it_is():
+    healed, planned = simulate(PRESS), solve(PRESS)
+    assert "relaxed" not in healed.attrs and "doubts" not in healed.attrs
+    assert healed.drop_attrs(deep=False).identical(planned.drop_attrs(deep=False))
+    assert "relaxed" not in summary(healed)["run"]
+
+
+def test_the_key_changes_nothing_of_scenes_that_lack_it():
+    """Not their content, by which records and results are known."""
+    plain = load_scene(PRESS).canonical()
+    assert "on_trouble" not in plain
+    assert load_scene(PRESS | {"on_trouble": "relax"}).canonical() == plain
+    assert load_scene(PRESS | {"on_trouble": "stop"}).canonical() != plain
+
+
+# -- a run that breaks off ---
+
+
+def test_a_step_that_failed_is_gone_on_with_from_its_last_good_state(monkeypatch):
+    """And ends where a run with iterations enough ends."""
+    expected = solve(PRESS)
+    starve(monkeypatch, iterations=2)
+    with pytest.raises(NonConvergence):
+        simulate(PRESS | {"on_trouble": "stop"})
+    monkeypatch.setattr(simulation, "PATIENCE", 0)
+    monkeypatch.setattr(stepping, "RESUMED_SHARE", 1.0)
+    with pytest.raises(NonConvergence, match="relaxed in vain: steps"):
+        simulate(PRESS | {"on_trouble": {"budget": 3}, "accuracy": {"skin_edge": "0.25 mm"}})
+    starve(monkeypatch, iterations=3, halvings=0)
+    monkeypatch.setattr(simulation, "PATIENCE", 9)
+    monkeypatch.setattr(stepping, "RESUMED_SHARE", 0.125)
+    found = simulate(PRESS | {"on_trouble": "relax"})
+    for name in ("indentation_depth", "contact_width", "stored_energy"):
+        np.testing.assert_allclose(found[name][-1], expected[name][-1], rtol=2e-3)
+
+
+def test_a_timed_step_goes_on_for_what_is_left_of_its_time(monkeypatch):
+    """Mutant: the whole of its time again would relax the pad further than it is pressed."""
+    ramp = PRESS | {
+        "motion": [{"press_to_depth": "1.5 mm", "speed": "1 mm/s"}],
+        "effects": {"finite_strain": "on"},
+    }
+    expected = solve(ramp)
+    original, calls = stepping.QuasiStatic._advance, {"n": 0}
+
+    def fails_now_and_then(self, dt, *args, **kwargs):
+        """Without the predictor, in single precision, at once, and after the first half."""
+        calls["n"] += 1
+        if calls["n"] in (3, 4, 5, 7):
+            raise stepping._StepFailure("made up")
+        return original(self, dt, *args, **kwargs)
+
+    monkeypatch.setattr(stepping.QuasiStatic, "_advance", fails_now_and_then)
+    monkeypatch.setattr(stepping, "MAX_HALVINGS", 1)
+    found = solve(ramp)
+    assert "went on from there" in found.attrs["notes"]
+    np.testing.assert_array_equal(found.time, expected.time)
+    np.testing.assert_allclose(found.force[1:], expected.force[1:], rtol=2e-3)
+
+
+# -- a run that doubts itself ---
+
+
+@pytest.fixture
+def doubtful(monkeypatch):
+    """A press whose pressure is doubted on its own mesh, and not on a finer one."""
+
+    def uneven(pressure, smooth):
+        return 0.3 if np.count_nonzero(pressure) < 28 else 0.0
+
+    monkeypatch.setattr(simulation, "checkerboard", uneven)
+    return PRESS
+
+
+def test_a_doubt_is_healed_and_what_that_changed_is_said(doubtful, tmp_path, capsys):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(json.dumps(doubtful))
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().out
+    assert "as planned the run doubted itself" in said and "relaxed mesh" in said
+    run = json.loads((tmp_path / "out" / "summary.json").read_text())["run"]
+    assert run["relaxed"]["kept"].startswith("mesh: edges")
+    assert run["relaxed"]["ended"] == "ran well"
+    written = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert written["relaxed"]["said"] == [run["relaxed"]["kept"]]
+    assert written["discretisation"]["nodes"] > 1.5 * plan(doubtful).nodes
+
+
+def test_stop_leaves_a_doubt_as_it_is(doubtful):
+    found = simulate(doubtful | {"on_trouble": "stop"})
+    assert "from node to node" in found.attrs["notes"] and "relaxed" not in found.attrs
+
+
+def test_a_mesh_that_is_given_is_not_refined(doubtful):
+    scene = load_scene(doubtful)
+    found = simulate(scene, mesh=mesh_for(scene, plan(scene)))
+    assert "relaxed" not in found.attrs and "from node to node" in found.attrs["notes"]
+
+
+def test_nothing_is_tried_beyond_the_budget(doubtful):
+    found = simulate(doubtful | {"on_trouble": {"budget": 0.5}})
+    tried = json.loads(found.attrs["relaxed"])
+    assert tried["kept"] == "" and all("too much" in each for each in tried["tried"])
+    assert "relaxed in vain" in found.attrs["notes"]
+
+
+# -- what may be relaxed ---
+
+
+def test_what_the_message_says_is_relaxed_the_cheapest_first():
+    assert kinds(PRESS, **MORE) == ["steps", "mesh", "steps", "mesh"]
+    assert kinds(EDGE) == ["mesh", "mesh", "stimulus"]
+    assert "linear solver" in kinds(PRESS, why="the matrix is singular", advice="")
+
+
+@pytest.mark.parametrize(
+    ("written", "kept"),
+    [
+        ({"accuracy": {"steps": 8}}, "steps"),
+        ({"accuracy": {"skin_edge": "0.25 mm"}}, "mesh"),
+        ({"accuracy": {"element": "Q2P1"}}, "mesh"),
+        ({"stimulus": {"shape": "bar", "width": "2 mm", "fillet": "0.03 mm"}}, "stimulus"),
+        (
+            {
+                "stimulus": {"shape": "cylinder", "curvature": "20000 1/m"},
+                "accuracy": {"skin_edge": "0.25 mm"},
+            },
+            "stimulus",
+        ),
+    ],
+)
+def test_what_the_user_wrote_is_relaxed_only_with_everything(written, kept):
+    scene = EDGE | written
+    assert kept not in kinds(scene, **MORE)
+    assert kept in kinds(scene | {"on_trouble": {"relax": "everything"}}, **MORE)
+
+
+def test_a_true_edge_gets_a_fillet_that_the_mesh_can_resolve():
+    first = in_trouble(EDGE)
+    *_, last = remedies(first, first.scene.relaxing)
+    assert last.scene.stimulus.fillet == pytest.approx(2 * first.plan.contact_edge)
+    assert "fillet" in last.said and not last.plan.unbounded
+
+
+# -- a mesh of one's own, divided ---
+
+
+@pytest.mark.parametrize("element", ["quad9", "tri6", "quad4", "tri3"])
+def test_a_divided_mesh_has_the_same_outline_and_layers(element):
+    scene = load_scene(PRESS)
+    mesh = mesh_for(scene, plan(scene))
+    if element != "quad9":
+        mesh = split(mesh, "quad4" if element == "quad4" else "tri6")
+    mesh = corners_only(mesh) if element == "tri3" else mesh
+    finer = halved(mesh)
+    check_orientation(finer, "mesh")
+    assert finer.element == element and len(finer.cells) == 4 * len(mesh.cells)
+    np.testing.assert_array_equal(np.bincount(finer.region), 4 * np.bincount(mesh.region))
+    np.testing.assert_allclose(_areas(finer), _areas(mesh), rtol=1e-12)
+    nodes = {tuple(point) for point in np.round(finer.points, 12)}
+    assert {tuple(point) for point in np.round(mesh.points, 12)} <= nodes
+    assert finer.right_half().half
+
+
+def _areas(mesh):
+    """Of each layer, m^2, of the elements as they are bent."""
+    kind = KINDS[mesh.element]
+    at, weights = kind.rule(4)
+    _, slopes = kind.shapes(at)
+    frame = np.einsum("qna,enx->eqax", slopes, mesh.points[mesh.cells])
+    areas = np.linalg.det(frame) @ weights
+    return np.bincount(mesh.region, weights=areas)
