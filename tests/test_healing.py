@@ -3,6 +3,7 @@ a run without trouble is left as it is.
 """
 
 import json
+import pickle
 from functools import partial
 
 import numpy as np
@@ -225,3 +226,13 @@ def _areas(mesh):
     frame = np.einsum("qna,enx->eqax", slopes, mesh.points[mesh.cells])
     areas = np.linalg.det(frame) @ weights
     return np.bincount(mesh.region, weights=areas)
+
+
+def test_a_run_without_convergence_is_passed_on_between_processes():
+    """Who simulates in a pool of their own gets the error with its state, not a broken pool."""
+    error = NonConvergence(0.25, "the residual stalls", "smaller steps", " in the hold")
+    error.hard, error.tried = ("a needle",), ("steps",)
+    again = pickle.loads(pickle.dumps(error))
+    assert (again.time, again.reason, again.hard) == (0.25, "the residual stalls", ("a needle",))
+    assert str(again) == str(error)
+    assert "t = 0.25 s in the hold: the residual stalls; try smaller steps; or less" in str(again)

@@ -19,6 +19,7 @@ CHANGES = (
         {"motion": LIGHT, "effects": {"finite_strain": True}, "stimulus": Bar(width=1e-3)},
         {"motion": STROKE, "friction": 0.3, "stimulus": Flat()},
     ),
+    ({"kinematics": "axisymmetric", "motion": LIGHT, "stimulus": Flat()},),
 )
 
 

@@ -57,5 +57,8 @@ say 4 "install fingerpad itself, from this folder"
 rm -rf "$cache"
 
 say 5 "compile the solver's loops for this machine (half a minute)"
+# Python's own compiled files first: numba knows a loop by them, and those that a first import writes
+# are not the same, so that a second run would compile again.
+"$run" -m compileall -q src
 "$run" workflow/scripts/compile_kernels.py
 echo "set-up: done, in $venv"

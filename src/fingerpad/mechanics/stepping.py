@@ -86,12 +86,13 @@ class NonConvergence(RuntimeError):
     tried: tuple[str, ...] = ()
 
     def __init__(self, time: float, reason: str, advice: str, where: str = ""):
-        super().__init__(f"no convergence after t = {time:.6g} s{where}: {reason}; try {advice}")
-        self.time, self.reason, self.advice = time, reason, advice
+        super().__init__(time, reason, advice, where)  # all, so that a process can pass it on
+        self.time, self.reason, self.advice, self.where = time, reason, advice, where
         self.records: list[Record] = []
 
     def __str__(self):
-        text = super().__str__() + (f"; or {hard_here(self.hard)}" if self.hard else "")
+        text = f"no convergence after t = {self.time:.6g} s{self.where}: {self.reason}"
+        text += f"; try {self.advice}" + (f"; or {hard_here(self.hard)}" if self.hard else "")
         return text + (f"; relaxed in vain: {', '.join(self.tried)}" if self.tried else "")
 
 
