@@ -55,6 +55,7 @@ Directory = _text(
 Folder = _text(r"\S", "a folder, relative to where the workflow runs or absolute")
 Coefficient = number("a number above 0", 0, math.inf)
 Height = number("a number from 0", 0, math.inf, low_included=True)
+Seed = Annotated[int, Field(ge=1, le=9999)]
 _ACCURACY = {
     "anyOf": [
         {"enum": list(LEVELS)},
@@ -134,6 +135,10 @@ class WorkflowConfig(Strict):
     field_scenes: _list(Name) = ()
     """Scenes simulated with whole fields of strain energy at their snapshots, for pictures of what
     happens inside.
+    """
+    seed: Seed | None = None
+    """Seed of hard cases that are drawn anew, by `snakemake stability_unseen --config seed=N`; left
+    out, the three that are published.
     """
     table_names: _list(Name) = ("summary",)
     """Tables to write; summary, what every scene ended at, if left out."""

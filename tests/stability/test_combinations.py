@@ -8,15 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-import yaml
 
 from cysyk1999.studies.common.documents import FLAT, depth, force, slide
 from cysyk1999.studies.stability.cases import (
     COMBINED,
-    FOLDER,
     PICKED,
     Case,
+    unseen,
 )
+from cysyk1999.studies.stability.combining import APART, DOCUMENT, FACTORS, pairs
 from cysyk1999.studies.stability.invariants import Reactions, difference, mirrored
 from cysyk1999.studies.stability.relaxing import relaxed
 from cysyk1999.studies.stability.run import second_solver, simulation
@@ -25,48 +25,34 @@ from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
 
 pytestmark = pytest.mark.stability
-COMBINATIONS = yaml.safe_load((FOLDER / "combinations.yaml").read_text(encoding="utf-8"))
-FACTORS: dict[str, list[str]] = COMBINATIONS["factors"]
 
 
 # -- combinations ---
-
-
-def pairs(levels):
-    """Every two of some levels of factors, as sets of (factor, level)."""
-    return {frozenset(pair) for pair in combinations(levels.items(), 2)}
-
-
-def apart():
-    """Pairs of levels that cannot meet."""
-    found = set()
-    for entry in COMBINATIONS["apart"]:
-        (one, first), (other, second) = (item for item in entry.items() if item[0] != "why")
-        assert entry["why"] and set(first) <= set(FACTORS[one]), entry
-        assert set(second) <= set(FACTORS[other]), entry
-        found |= {frozenset([(one, a), (other, b)]) for a, b in product(first, second)}
-    return found
 
 
 def test_every_two_hard_levels_that_may_meet_do():
     wanted = {
         frozenset([(one, level), (other, beside)])
         for one, other in combinations(FACTORS, 2)
-        for level, beside in product(FACTORS[one][1:], FACTORS[other][1:])
+        for level, beside in product([*FACTORS[one]][1:], [*FACTORS[other]][1:])
     }
+    assert all(entry["why"] for entry in DOCUMENT["apart"])
+    assert all(level in FACTORS[factor] for pair in APART for factor, level in pair)
     met = set().union(*(pairs(case.levels) for case in COMBINED.values()))
-    missing = wanted - apart() - met
-    assert not missing and not met & apart(), sorted(map(sorted, missing))
-    assert len(apart()) < 0.03 * len(wanted)
+    missing = wanted - APART - met
+    assert not missing and not met & APART, sorted(map(sorted, missing))
+    assert len(APART) < 0.03 * len(wanted)
     assert max(len(case.levels) for case in COMBINED.values()) <= 5
 
 
 def test_combinations_are_numbered_and_named_by_their_levels():
     for number, (name, case) in enumerate(COMBINED.items(), start=len(PICKED) + 1):
-        every = {factor: levels[0] for factor, levels in FACTORS.items()} | case.levels
+        every = {factor: next(iter(levels)) for factor, levels in FACTORS.items()} | case.levels
         assert name == f"{number}: {every['stimulus']}, {every['pad']}"
         assert case.group == every["stimulus"] and set(every) == set(FACTORS)
-        assert not {(f, level) for f, level in case.levels.items() if level == FACTORS[f][0]}
+        assert not {
+            (f, level) for f, level in case.levels.items() if level == next(iter(FACTORS[f]))
+        }
 
 
 def test_scenes_do_what_their_levels_say(tmp_path):
@@ -84,8 +70,20 @@ def test_scenes_do_what_their_levels_say(tmp_path):
         assert f"law {levels.get('law')}" in case.hard or "yeoh" not in str(scene)
         for level in levels.items():
             seen.setdefault(level, case)
-    assert set(seen) == {(f, level) for f, levels in FACTORS.items() for level in levels[1:]}
+    assert set(seen) == {(f, level) for f, levels in FACTORS.items() for level in [*levels][1:]}
     for case in {case.name: case for case in seen.values()}.values():
+        assert case.read(tmp_path).name == case.name
+
+
+def test_drawn_cases_are_new_and_come_again_by_their_seed(tmp_path):
+    one, again, other = unseen(3, 40), unseen(3, 40), unseen(4, 40)
+    levels = [case.levels for case in one.values()]
+    assert [case.levels for case in again.values()] == levels
+    known = [case.levels for case in (*COMBINED.values(), *other.values())]
+    assert not [each for each in levels if each in known]
+    assert not [each for each in levels if pairs(each) & APART]
+    assert {case.group for case in one.values()} == set(list(FACTORS["stimulus"])[1:])
+    for case in list(one.values())[::8]:
         assert case.read(tmp_path).name == case.name
 
 

@@ -37,7 +37,8 @@ NAME, TIME, ERROR, ASKED = "name", "process time (s)", "error (%)", "asked for (
 PLANNED, CHANGE, COST = "planned", "change (%)", "cost ratio"
 ENDS = {
     "stable": "stable",
-    "labours": "healed by smaller steps",
+    "healed": "healed by itself",
+    "labours": "right, but laboured",
     "admits its error": "says that it is wrong",
     "fails cleanly": "stopped, said why",
     "wrong": "wrong",
@@ -45,7 +46,11 @@ ENDS = {
 }
 """Outcome in the table -> in the picture; any other outcome is wrong."""
 COLOURS = dict(
-    zip(ENDS, (PALE, "#9fc3d6", HIGHLIGHT, "#003a5d", CATEGORIES[1], "white"), strict=True)
+    zip(
+        ENDS,
+        (PALE, "#9fc3d6", "#6b9ab8", HIGHLIGHT, "#003a5d", CATEGORIES[1], "white"),
+        strict=True,
+    )
 )
 SAVED = {"symmetry": "half the pad only (saves time)"}
 """What is switched on to save time: there, on should change nothing."""
@@ -114,7 +119,8 @@ def _listed(values: pd.Series) -> str:
 
 def stability_rows(table: DataFrame) -> DataFrame:
     """One row a kind of hardness: how many cases ended how."""
-    ends = table["outcome"].where(table["outcome"].isin(list(ENDS)), "wrong")
+    ends = table["with remedies" if "with remedies" in table else "outcome"]
+    ends = ends.where(ends.isin(list(ENDS)), "wrong")
     counts = pd.crosstab(table["group"], ends).reindex(columns=list(ENDS), fill_value=0)
     share = counts["stable"] / counts.sum(axis=1)
     return counts.loc[share.sort_values(kind="stable").index].reset_index()
@@ -126,7 +132,8 @@ def stability(frame: DataFrame) -> Figure:
     counts = frame.set_index("group")[list(ENDS)]
     total = counts.sum()
     title = (
-        f"Of {total.sum()} hard cases {total['stable']} are stable, {total['labours']} heal, "
+        f"Of {total.sum()} hard cases {total['stable']} are stable, {total['healed']} heal, "
+        f"{total['labours']} labour, "
         f"{total['admits its error'] + total['fails cleanly']} stop or say that they are wrong, "
         f"and {total['wrong'] or 'none'} {'are' if total['wrong'] > 1 else 'is'} silently wrong"
     )

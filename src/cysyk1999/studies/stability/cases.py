@@ -1,7 +1,8 @@
 """The catalogue of hard cases: scenes on a draft mesh, what makes each hard, and what is stable.
 
 Cases are data: ``config/stability/picked.yaml`` has those picked by hand,
-``config/stability/combinations.yaml`` those in which every two hard levels of the factors meet.
+``config/stability/combinations.yaml`` those in which every two hard levels of the factors meet
+(:mod:`cysyk1999.studies.stability.combining`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import yaml
 
 from cysyk1999.studies.common.documents import CONFIG, FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import corners_only, distorted, split
+from cysyk1999.studies.stability.combining import drawn, listed
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for, write_pad
@@ -200,17 +202,22 @@ MESHES: dict[str, list[Callable[[PadMesh], PadMesh]]] = {
 """Name of an external mesh in the catalogue -> what is done to the one that would be built."""
 
 
-def _case(name: str, entry: Mapping[str, Any]) -> Case:
+def _case(entry: Mapping[str, Any]) -> Case:
     levels = entry.get("levels", {})
     others = (f"{name} {level}" for name, level in levels.items() if name != "stimulus")
     limits = Limits(**entry.get("limits", {}))
-    return Case(name, **{"hard": "; ".join(others)} | entry | {"limits": limits})
+    return Case(**{"hard": "; ".join(others)} | dict(entry) | {"limits": limits})
 
 
-def _cases(file: str) -> dict[str, Case]:
-    entries = yaml.safe_load((FOLDER / file).read_text(encoding="utf-8"))
-    return {name: _case(name, entry) for name, entry in entries.get("cases", entries).items()}
+def _picked() -> dict[str, Case]:
+    entries = yaml.safe_load((FOLDER / "picked.yaml").read_text(encoding="utf-8"))
+    return {name: _case({"name": name} | entry) for name, entry in entries.items()}
 
 
-PICKED, COMBINED = _cases("picked.yaml"), _cases("combinations.yaml")
+PICKED, COMBINED = _picked(), {entry["name"]: _case(entry) for entry in listed()}
 CATALOGUE: dict[str, Case] = PICKED | COMBINED
+
+
+def unseen(seed: int, count: int = 100) -> dict[str, Case]:
+    """Cases that the catalogue does not have, drawn by a seed."""
+    return {entry["name"]: _case(entry) for entry in drawn(seed, count)}

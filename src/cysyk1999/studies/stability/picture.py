@@ -118,12 +118,20 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
         out[method] = [_ending(row) for row in rows.to_dict("records")]
     shares = long(frame[frame["method"] == DEFAULT]).set_index(["case", "measure"])["share"]
     out["nearest to its limit"] = [_nearest(shares[case]) for case in out.index]
-    texts = {"message": "said", "saved": "last state saved", "relaxed": "stable when relaxed"}
+    out.insert(4, "with remedies", default.get("ended", default["outcome"]))
+    texts = {
+        "healed": "what was relaxed",
+        "message": "said",
+        "saved": "last state saved",
+        "relaxed": "stable when relaxed",
+    }
     for name, column in texts.items():
         out[column] = default.get(name, pd.Series("", default.index)).astype(object).fillna("")
     said = ": " + out["said"].where(out["said"] != "")
     cure = "; stable with " + out["stable when relaxed"].where(out["stable when relaxed"] != "")
-    out["how it ended"] = out["outcome"] + said.fillna("") + cure.fillna("")
+    mended = out["with remedies"] == "healed"
+    healed = ("; healed: " + out["what was relaxed"]).where(mended, "")
+    out["how it ended"] = out["outcome"] + said.fillna("") + healed + cure.fillna("")
     out.insert(0, "case", out.index)
     out.insert(0, "no.", default["number"])
     shown = ["no.", "case", "what makes it hard", "how it ended", "nearest to its limit"]
