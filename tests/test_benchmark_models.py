@@ -139,6 +139,21 @@ def test_held_out_rows_do_not_move_a_constant(monkeypatch):
 
 
 @unit
+def test_the_mesh_error_is_what_a_coarser_mesh_changes(monkeypatch):
+    """Of made-up runs that a coarser mesh makes a tenth too large: a tenth of the largest."""
+    measured = {"profile_cylinder_3mm": datasets(["profile_cylinder_3mm"])["profile_cylinder_3mm"]}
+    monkeypatch.setattr(
+        predict,
+        "_simulated",
+        lambda name, rows: [(np.array([-row.row]), np.array([-1.1 * row.row])) for row in rows],
+    )
+    found = predict.this_model(measured)
+    most = max(row.row for row in measured["profile_cylinder_3mm"])
+    for (_, row), each in found.items():
+        assert (each.value, each.mesh_error) == pytest.approx((-row, 0.1 * row / most))
+
+
+@unit
 def test_every_dataset_is_predicted_or_says_why():
     for name in titles():
         assert name.startswith(tuple(predict.CONSTANTS)) != (name in predict.NOT_PREDICTED)

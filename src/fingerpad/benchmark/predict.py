@@ -7,7 +7,6 @@ Free constants are fitted to rows with the role ``fit`` alone.
 from __future__ import annotations
 
 import json
-import math
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -29,7 +28,8 @@ DEPTHS = (0.3e-3, 0.6e-3, 0.8e-3, 0.915e-3)
 FELT = ("strain_energy_density", "compressive_strain")
 CANDIDATES = tuple((felt, depth) for felt in FELT for depth in DEPTHS)
 """What a receptor may feel, and where; rows with the role ``fit`` choose one."""
-ACCURACY = "draft"
+ACCURACY, COARSER = "thesis", "draft"
+"""Of the runs that count, and of those that tell what their mesh may be worth."""
 BARS = (3.0, *[0.5] * 7, 3.0)
 GAPS = (0.52, 0.49, 0.71, 0.98, 1.49, 1.96, 2.94, 4.97)
 """mm, of the grating, in their order."""
@@ -57,9 +57,9 @@ NOT_PREDICTED = {
     "anatomy": "what models are built from",
 }
 """Datasets that are not predicted -> why."""
-Raw = tuple[np.ndarray, float]
+Raw = tuple[np.ndarray, ...]
 """Numbers before constants are fitted, one for each of `CANDIDATES` of a rate and else one; and the
-share of them that is error of the mesh.
+same on a coarser mesh, if there is one.
 """
 
 
@@ -100,10 +100,13 @@ def _predicted(measured: Mapping[str, Iterable[Row]], raw: _Model) -> Prediction
     numbers = {name: list(raw(name, rows)) for name, rows in needed.items()}
     found: Predictions = {}
     for name in chosen:
-        law = _constants(needed[kinds[name]], [value for value, _ in numbers[kinds[name]]])
-        for row, (value, error) in zip(needed[name], numbers[name], strict=True):
-            if np.isfinite(value).all():
-                found[name, row.row] = Prediction(float(law(row, value)), error)
+        law = _constants(needed[kinds[name]], [value for value, *_ in numbers[kinds[name]]])
+        pairs = list(zip(needed[name], numbers[name], strict=True))
+        known = [(row, pair) for row, pair in pairs if np.isfinite(pair[0]).all()]
+        both = {row.row: [float(law(row, each)) for each in pair] for row, pair in known}
+        largest = max((abs(value) for value, *_ in both.values()), default=0.0) or 1.0
+        for number, (value, *other) in both.items():
+            found[name, number] = Prediction(value, *(abs(b - value) / largest for b in other))
     return found
 
 
@@ -168,18 +171,21 @@ def _of_one_scene(fragment: dict[str, Any], rows: list[Row]) -> dict[int, Raw]:
     places = sorted({abs(row.place("x", "length")) for row in rows}) if rates else [0.0]
     scene = fragment | {
         "motion": [{f"press_to_{key}": f"{load!r} {unit}"} for load in loads],
-        "accuracy": ACCURACY,
         "outputs": _receptors(places),
     }
-    history = leg_ends(simulate(scene))
-    error = float(history.attrs["estimated_error"])
+    two = _on_two_meshes(scene)
     return {
-        row.row: (
-            _read(history.isel(time=loads.index(row.place(key, dimension))), row),
-            error,
+        row.row: tuple(
+            _read(each.isel(time=loads.index(row.place(key, dimension))), row) for each in two
         )
         for row in rows
     }
+
+
+def _on_two_meshes(scene: dict[str, Any]) -> tuple[xr.Dataset, ...]:
+    """States at the ends of legs, on the mesh that counts and on a coarser one."""
+    levels = ({"accuracy": each} for each in (ACCURACY, COARSER))
+    return tuple(leg_ends(simulate(scene | level)) for level in levels)
 
 
 def _receptors(places: Iterable[float]) -> dict[str, Any]:
@@ -256,12 +262,10 @@ def _over_grating(rows: list[Row]) -> list[Raw]:
             scene = {
                 "stimulus": {"shape": "sampled", "csv": str(path), "smooth": "none"},
                 "motion": [{"press_to_depth": f"{row.place('depth', 'length')!r} m"}],
-                "accuracy": ACCURACY,
                 "outputs": _receptors(near),
             }
-            history = leg_ends(simulate(scene)).isel(time=-1)
-            felt = _extreme(row, _felt(history, *near))
-            found.append((felt, float(history.attrs["estimated_error"])))
+            states = (each.isel(time=-1) for each in _on_two_meshes(scene))
+            found.append(tuple(_extreme(row, _felt(state, *near)) for state in states))
     return found
 
 
@@ -280,7 +284,7 @@ def _write_grating(path: Path, over: float, height: float = 2e-3, slope: float =
 
 
 def _closed_form(name: str, rows: list[Row]) -> list[Raw]:
-    return [(_alone(row), math.nan) for row in rows]
+    return [(_alone(row),) for row in rows]
 
 
 def _alone(row: Row) -> np.ndarray:

@@ -23,7 +23,9 @@ COARSE = 0.2
 
 @dataclass(frozen=True)
 class Prediction:
-    """A predicted number in the unit of its row, and the share of it that is error of the mesh."""
+    """A predicted number in the unit of its row, and its change on a coarser mesh, as a share of
+    the largest prediction of its dataset.
+    """
 
     value: float
     mesh_error: float = math.nan
@@ -55,8 +57,8 @@ class Score:
     within_factor_2 : float
         Share between half and twice the measurement.
     mesh_error : float
-        The largest that the runs state, as a share, of their worst quantity (often the pressure at
-        an edge); not added to the errors above.
+        What a coarser mesh changes at most, as a share of the largest prediction; not added to
+        the errors above.
     verdict : str
         One sentence.
     """
@@ -186,7 +188,7 @@ def _verdict(squared: float, near: float, predicted: int, total: int, mesh: floa
     """A sentence: what the model may be used for here; where its mesh is coarse it says so."""
     part = "" if predicted == total else f" ({predicted} of {total} rows predicted)"
     if mesh > COARSE:
-        part += f", with a mesh error of up to {100 * mesh:.0f} % of its worst quantity"
+        part += f", and a coarser mesh changes it by up to {100 * mesh:.0f} %"
     if squared >= 0.8 and near >= 0.9:
         return f"To be trusted here{part}."
     if squared >= 0.5:
