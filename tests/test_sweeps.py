@@ -292,16 +292,28 @@ def pretend(monkeypatch, spoil=None):
     return ran
 
 
+def test_a_record_says_what_was_relaxed():
+    document = {
+        "stimulus": {"shape": "cylinder", "curvature": "1260 1/m"},
+        "motion": [{"press_to_depth": "2 mm", "speed": "20 mm/s"}, {"hold": "1 s"}],
+        "accuracy": {"steps": 2},
+    }
+    found = [
+        batch.measured(load_scene(document | {"on_trouble": how}), [])["relaxed"]
+        for how in ({"relax": "everything"}, "stop")
+    ]
+    assert found[0].startswith("steps: ") and not found[1]
+
+
 def test_one_bad_scene_is_a_record_with_its_diagnosis(tmp_path, monkeypatch):
-    bad = NonConvergence.__new__(NonConvergence)
-    Exception.__init__(bad, "step 3 did not converge\nat t = 1 s")
+    bad = NonConvergence(1.0, "step 3 did not\nsettle", "more")
     ran = pretend(monkeypatch, {200: bad, 300: ZeroDivisionError("by zero")})
     batch.run_batch(*batch_in(tmp_path))
     found = list(read_records(tmp_path / "batches" / "one.jsonl"))
     assert ran == [100, 200, 300, 400]
     assert [r["diagnosis"] for r in found] == [
         "",
-        "step 3 did not converge at t = 1 s",
+        "no convergence after t = 1 s: step 3 did not settle; try more",
         "ZeroDivisionError: by zero",
         "",
     ]
@@ -418,7 +430,7 @@ def test_a_grid_becomes_a_labelled_dataset_and_a_table(laid, monkeypatch):
     np.testing.assert_array_equal(table["contact_width_end (mm)"], measured)
     assert table.failed.tolist() == [0, 0, 1, 1, 0, 0]
     assert table.diagnosis[2] == "ValueError: wrong"
-    assert list(table)[-3:] == ["iterations (1)", "failed", "diagnosis"]
+    assert list(table)[-3:] == ["relaxed", "failed", "diagnosis"]
 
 
 def test_draws_become_scenes_with_their_parameters_as_coordinates(laid, monkeypatch):

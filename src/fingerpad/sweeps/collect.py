@@ -23,7 +23,10 @@ from fingerpad.sweeps.engine import read_layout
 from fingerpad.sweeps.records import read_records
 
 FAILED = {"long_name": "whether the scene could not be simulated", "units": "1"}
-DIAGNOSIS = {"long_name": "why the scene could not be simulated"}
+TEXTS = {
+    "diagnosis": {"long_name": "why the scene could not be simulated"},
+    "relaxed": {"long_name": "what was relaxed, as the run was in trouble"},
+}
 RUN = {
     "estimated_error": (
         "1",
@@ -66,7 +69,7 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
         design["about"] | counts,
     )
     packed = {"zlib": True, "complevel": 1}
-    encoding = dict.fromkeys(columns.keys() - {"failed", "diagnosis"}, packed)
+    encoding = dict.fromkeys(columns.keys() - {"failed", *TEXTS}, packed)
 
     write_atomically(dataset, partial(write_dataset, data, encoding))
     frame = _table(data, list(columns))
@@ -88,8 +91,9 @@ def _columns(
     keys, numbers = design["keys"], defaultdict(list)
     for number, key in enumerate(keys):
         numbers[key].append(number)
-    failed, diagnosis = np.full(len(keys), -1, "i1"), np.full(len(keys), "", object)
-    columns = {"failed": (failed, FAILED), "diagnosis": (diagnosis, DIAGNOSIS)}
+    failed = np.full(len(keys), -1, "i1")
+    columns = {"failed": (failed, FAILED)}
+    columns |= {name: (np.full(len(keys), "", object), about) for name, about in TEXTS.items()}
     for name, (unit, text) in RUN.items():
         columns[name] = np.full(len(keys), np.nan), {"units": unit, "long_name": text}
     taken = {p["name"] for p in design["parameters"]} | set(design["dimensions"])
@@ -99,7 +103,9 @@ def _columns(
         at = [n for n in numbers.get(record["key"], ()) if failed[n] < 0 or failed[n] > bool(wrong)]
         if not at:
             continue
-        failed[at], diagnosis[at] = bool(wrong), wrong
+        failed[at] = bool(wrong)
+        for name in TEXTS:
+            columns[name][0][at] = record.get(name, "")
         for name in RUN:
             columns[name][0][at] = record.get(name, np.nan)
         for quantity, condition, unit, value in record["measures"]:
@@ -142,7 +148,7 @@ def _coordinate(parameter: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str
 
 def _table(data: xr.Dataset, variables: list[str]) -> pd.DataFrame:
     """A row a scene: number, parameters, measures with their units, errors, diagnosis."""
-    last = [*RUN, "failed", "diagnosis"]
+    last = [*RUN, "relaxed", "failed", "diagnosis"]
     names = [*data.coords, *(name for name in variables if name not in last), *last]
     frame = data.to_dataframe().reset_index()[names]
     frame = frame.astype(dict.fromkeys(("nodes", "steps", "iterations"), "Int64"))
