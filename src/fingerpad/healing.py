@@ -180,10 +180,10 @@ def _healed(
         if _work(remedy.plan) > left:
             tried.append(f"{remedy.said} (not tried: it would cost too much)")
             continue
-        left -= _work(remedy.plan)
         try:
             check_memory(remedy.scene, remedy.plan.nodes, remedy.plan.outputs, RULES)
             found = run(remedy.scene, _saying(remedy))
+            left -= _work(remedy.plan) * _reached(found)
         except KeyboardInterrupt as stop:
             if best.problem is None:
                 vars(stop)["dataset"] = best.history  # the run before is whole
@@ -218,6 +218,13 @@ def _factors(history: xr.Dataset) -> float:
     """Matrices factorised, mean of the states that were found."""
     factorisations = json.loads(history.attrs["cost"])["factorisations"]
     return factorisations / max(states_found(history), 1)
+
+
+def _reached(found: Try) -> float:
+    """How much of its steps a run has solved."""
+    if found.problem is None:
+        return 1.0
+    return 0.0 if found.history is None else min(states_found(found.history) / found.plan.steps, 1)
 
 
 def _work(plan: Plan) -> float:
