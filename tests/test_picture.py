@@ -26,7 +26,7 @@ def test_picture_shows_the_history_in_millimetres_and_kilopascals(history):
     last = history.isel(time=-1)
     depth, width = (1e3 * float(last[k]) for k in ("indentation_depth", "contact_width"))
     said = figure.get_suptitle()
-    assert f"in by {depth:.3g} mm" in said and f"contact {width:.3g} mm wide" in said
+    assert f"depth {depth:.3g} mm" in said and f"contact {width:.3g} mm wide" in said
     drawn = pressure.lines[-1].get_ydata()
     assert drawn.max() == pytest.approx(1e-3 * last.contact_pressure.values.max())
     touched = pressure.lines[-1].get_xdata()[drawn > 0]

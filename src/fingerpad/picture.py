@@ -56,7 +56,7 @@ def draw_history(history: xr.Dataset, stimulus: Profile) -> Figure:
         _impulses(axes[1, 1], history)
         last, error = history.isel(time=-1), 100 * float(history.attrs["estimated_error"])
         figure.suptitle(
-            f"Pressed in by {1e3 * float(last.indentation_depth):.3g} mm: contact "
+            f"At the end: depth {1e3 * float(last.indentation_depth):.3g} mm, contact "
             f"{1e3 * float(last.contact_width):.3g} mm wide, highest pressure "
             f"{1e-3 * float(last.peak_pressure):.3g} kPa (simulated, error about {error:.1f} %)",
             fontsize=8,

@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
+from matplotlib.text import Text
 from pandas import DataFrame, Series
 
 from cysyk1999.measures.energy_of_1999 import FACTOR
@@ -372,10 +373,11 @@ def _band(uncertain: bool) -> dict[str, object]:
 
 
 def declare_range(fig: Figure, width: int) -> None:
-    """Say in the last line of the note, where there is room for it, what the thesis's ranges look
-    like, if any is drawn.
+    """Say what the thesis's ranges look like, if any is drawn: in the last line of the note where
+    there is room for it, else in the first that is shaded if no bracket says it.
     """
     marks = [artist for artist in fig.findobj() if artist.get_gid() == RANGE]
+    texts = [text.get_text() for text in fig.findobj(Text)]
     note = fig.texts[-1]
     last = note.get_text().rpartition("\n")[2]
     short = " Olive: range of the thesis's axes"
@@ -383,6 +385,11 @@ def declare_range(fig: Figure, width: int) -> None:
         if marks and len(last) + len(words) <= width:
             note.set_text(note.get_text() + words)
             return
+    shaded = [mark for mark in marks if isinstance(mark, Rectangle)]
+    if shaded and not any("thesis axis" in text or "thesis's axis" in text for text in texts):
+        inside = {"xytext": (-3, -3), "textcoords": "offset points", "ha": "right", "va": "top"}
+        look = {"fontsize": 6, "color": style.GREY}
+        shaded[0].axes.annotate("thesis's axes", (1, 1), xycoords=shaded[0], **inside, **look)
 
 
 def thesis_box(ax: Axes, x: Range, y: Range) -> None:

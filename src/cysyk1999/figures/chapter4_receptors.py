@@ -706,7 +706,8 @@ def beside(ax: Axes, rows: DataFrame, title: str, mismatch: str) -> None:
         other = bool(round_) and name not in round_
         look = style.look_of("force (gf)", _force(name), "ls")
         look |= {"lw": 0.8, "color": style.GREY} if other else {"lw": 1.1, "color": style.INK}
-        label = "" if other and len(round_) > 1 else name
+        label = name if name.startswith("predicted") else f"predicted, {name}"
+        label = "" if other and len(round_) > 1 else label
         ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **look, label=label)
     ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()))
     ax.set_xlabel(CURVATURE.label)

@@ -265,7 +265,7 @@ def say_brackets(panels, frame):
     """What the brackets beside the panels are."""
     ax = next(iter(panels.values()))
     style.leave_room(ax.figure, beside=0.02)
-    text = "brackets: thesis's axis (?: reading uncertain)"
+    text = "brackets: thesis's axis (broken: reading uncertain)"
     axs.remark(ax, 0.99, 0.97, text, ha="right", va="top", **axs.NOTE)
 
 
@@ -321,7 +321,7 @@ def legend_of_the_first(panels, frame):
     """With the brackets that stand at some panels."""
     first = next(iter(panels.values()))
     line = {"color": style.GREY, "lw": 0.7, "ls": style.DASHED, "marker": "|", "ms": 4}
-    first.plot([], [], label="thesis's axis (?: reading uncertain)", **line)
+    first.plot([], [], label="thesis's axis (broken: reading uncertain)", **line)
     first.legend(loc="upper right")
 
 

@@ -14,12 +14,10 @@ from pandas import DataFrame
 
 from cysyk1999.figures import axes as axs
 from cysyk1999.figures.geometry import (
-    LAYERS,
     NOTE,
     draw_mesh,
     layer_patches,
     mesh_rows,
-    quality_of,
     stratum_corneum,
 )
 from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Page, Panels, stacked
@@ -67,12 +65,10 @@ def mesh_and_detail(fig, frame, spec):
     frame_of = {"fill": False, "ec": style.INK, "lw": 0.8}
     whole.add_patch(Rectangle((left, low), right - left, high - low, **frame_of))
     small = {"handlelength": 1.0, "columnspacing": 0.9, "borderaxespad": 0.2}
-    whole.legend(handles=layer_patches(LAYERS[:-1]), loc="upper left", ncols=4, **small)
+    whole.legend(handles=layer_patches(), loc="upper left", ncols=5, **small)
     at = [-BESIDE * 1e3, 0, BESIDE * 1e3], [6.0 - DEPTH * 1e3] * 3
     detail.plot(*at, "o", mfc="white", mec=style.INK, ms=3.2, mew=0.7)
-    value = quality_of(frame)
-    smallest = f"smallest edge {value['smallest_edge (um)']:.0f} µm"
-    detail.set_title(f"{value['nodes (1)']:,.0f} nodes, {smallest}", fontsize=6.5)
+    detail.set_title(f"circles: receptors, {DEPTH * 1e6:.0f} µm deep", fontsize=6.5)
 
 
 @stacked

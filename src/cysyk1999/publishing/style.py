@@ -445,9 +445,14 @@ def label_ends(
     small = {"va": "center", "fontsize": 6.5}
     for (label, (x, y)), position in zip(ends.items(), positions, strict=True):
         ax.plot([x, x_label], [y, position], color=GREY, lw=0.5, ls=(0, (1, 2)), clip_on=False)
-        ax.plot(x_label, position, "s", ms=2.5, clip_on=False, color=COLOURS.get(label, INK))
+        ax.plot(x_label, position, "s", ms=2.5, clip_on=False, color=_of_surface(label))
         ax.text(x_label, position, f"  {'flat plate' if label == 'flat' else label}", **small)
     ax.text(x_label, positions.max() + gap * 1.1, heading, **small)
+
+
+def _of_surface(label: str) -> str:
+    """Colour of a plate or of a curvature (1/m) by its label; ink for any other."""
+    return curvature_colour(float(label)) if label.isdigit() else COLOURS.get(label, INK)
 
 
 def _axes_height(ax: Axes) -> float:

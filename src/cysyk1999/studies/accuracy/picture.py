@@ -1,5 +1,5 @@
-"""Figures of the study of accuracy: error and cost, growth of cost, belief and truth. Each is drawn
-from its data frame.
+"""Figures of the study of accuracy: error and cost, growth of cost, true and stated error. Each is
+drawn from its data frame.
 """
 
 from __future__ import annotations
@@ -144,8 +144,9 @@ def error_stroke(frame: pd.DataFrame) -> Figure:
 @styled
 def growth(frame: pd.DataFrame) -> Figure:
     """Process time, iterations and memory against nodes, with fitted exponents."""
+    powers = [f"{power:.2f}" for power in sorted(frame["exponent"].dropna())]
     fig = study_figure(
-        "How cost grows with the mesh",
+        f"Time grows with the number of nodes to the power of {powers[0]} to {powers[-1]}",
         [
             "Simulated: mean of ramp and hold by plate, 210 and 1260 1/m, 40 steps; nodes of the "
             "whole pad, half of which is solved. Time with meshing; exponents of it from 3000 "
@@ -182,7 +183,7 @@ def _belief(title: str, note: str, height: float = 3.9) -> tuple[Figure, Axes, A
     ends = np.array([0.08, 100.0])
     left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
     left.loglog(ends, ends, color=GREY, lw=0.8)
-    left.set(xlabel=BELIEVED, ylabel=TRUE, xlim=ends, ylim=ends)
+    left.set(xlabel="stated error (%)", ylabel=TRUE, xlim=ends, ylim=ends)
     right.set_xscale("log")
     return fig, left, right
 
@@ -194,7 +195,7 @@ def _rows(left: Axes, right: Axes, names: Sequence[str], small: bool = False) ->
     right.axvline(1, color=GREY, lw=0.8)
     right.set_yticks(range(len(names)), names, fontsize=6.5)
     right.invert_yaxis()
-    right.set_xlabel("truth / belief")
+    right.set_xlabel("true error / stated error")
 
 
 @styled
@@ -203,12 +204,12 @@ def belief(frame: pd.DataFrame) -> Figure:
     asked, covers = frame[frame[TRUE].notna()], covered(frame)
     own = frame.loc[frame[TRUE].isna(), BELIEVED]
     fig, left, right = _belief(
-        "Does a run know its error?",
-        f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest "
-        "difference "
-        "of depth, width, pressures and strain energies at the legs' ends, of strokes root mean "
-        f"square, to a finer run, which believes in {own.min():.1f} to {own.max():.1f} % itself. "
-        f"Below the line the belief covers the truth: {covers.sum()} of {len(asked)} runs.",
+        f"The stated error is at least the true one in {covers.sum()} of {len(asked)} runs of "
+        f"{asked['scene'].nunique()} scenes outside the study",
+        "Simulated. True error: largest difference of depth, width, pressures and strain energies "
+        "at the legs' ends, of strokes root mean square, to a finer run, which states "
+        f"{own.min():.1f} to {own.max():.1f} % itself. Below the line the stated error is large "
+        "enough.",
     )
     scenes = list(asked["scene"].unique())
     for accuracy, part in asked.groupby("accuracy", sort=False):
@@ -228,11 +229,12 @@ def drawn(frame: pd.DataFrame) -> Figure:
     """What runs state as their error against what it is, scenes drawn by class of stimulus."""
     asked, covers = frame[frame[TRUE].notna()], covered(frame)
     fig, left, right = _belief(
-        "Does a run know its error under any stimulus?",
-        f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10, 5 or, beside "
-        "ridges, 2 %. Truth: largest difference of depth, width, pressures and strain energies at "
+        f"The stated error is at least the true one in {covers.sum()} of {len(asked)} random "
+        "scenes",
+        "Simulated. Each scene was asked for 10, 5 or, beside ridges, 2 %. True error: largest "
+        "difference of depth, width, pressures and strain energies at "
         "the legs' ends, of strokes root mean square, to edges at least 1.7 times as short. Below "
-        f"the line the belief covers the truth: {covers.sum()} of {len(asked)} runs.",
+        "the line the stated error is large enough.",
     )
     names = []
     for place, (name, part) in enumerate(asked.groupby("class", sort=False)):
@@ -296,9 +298,9 @@ def shown(frame: pd.DataFrame) -> Figure:
         f"Figures state an error that covers the true one in {covered} of {len(frame)} curves, "
         f"and is at least half of it in {twice}",
         f"Simulated: {len(frame)} curves and numbers, each with the first figure that shows it. "
-        "Truth: what they change by on a mesh with half the edges, and what by their order of "
+        "True error: what they change by on a mesh with half the edges, and what by their order of "
         "convergence is left then, root mean square. Stated: mesh, time steps and sampling. Below "
-        f"the line the error stated covers the truth. True errors above 3 %: {(true > 3).sum()}.",
+        f"the line the stated error is large enough. True errors above 3 %: {(true > 3).sum()}.",
         1.0 + 0.112 * len(figures),
     )
     look = {"ls": "", "ms": 3.2, "mfc": "white", "mew": 0.7}
@@ -311,8 +313,6 @@ def shown(frame: pd.DataFrame) -> Figure:
             ratio = (true / stated)[here].clip(lower=0.03)
             right.plot(ratio, frame.loc[here, "figure"].map(figures.index), **own)
     _rows(left, right, [f"Fig {number}" for number in figures])
-    left.set(xlabel="stated error (%)")
-    right.set(xlabel="truth / stated")
     right.tick_params(axis="y", labelsize=6)
     right.set_ylim(len(figures) - 0.4, -0.6)
     return fig

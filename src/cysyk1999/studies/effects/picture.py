@@ -67,7 +67,10 @@ def effects(frame: pd.DataFrame) -> Figure:
         "for (line), what is carried at "
         "least a tenth of it (dashed)."
     )
-    fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH), height, laid_out=False)
+    verdicts = frame.loc[frame["panel"] == "planner"].dropna(subset="share")["verdict"]
+    wrong = int(verdicts.isin(WRONG).sum())
+    title = f"{wrong} of {len(verdicts)} choices of the planner are wrong"
+    fig = sheet(title, wrapped([note], NOTE_WIDTH), height, laid_out=False)
     grid = fig.add_gridspec(
         1,
         2,
@@ -76,7 +79,7 @@ def effects(frame: pd.DataFrame) -> Figure:
         top=1 - 0.72 / height,
         bottom=0.85 / height,
         wspace=0.42,
-        width_ratios=(1.35, 1),
+        width_ratios=(1.5, 1),
     )
     _changes(fig.add_subplot(grid[0, 0]), frame[frame["panel"] == "changes"])
     _planner(fig.add_subplot(grid[0, 1]), frame[frame["panel"] == "planner"], scenes)
@@ -126,10 +129,10 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     logs = np.log10(change.to_numpy())
     places = 10 ** spread(logs, 0.33, np.log10(LEAST / 2) + 0.1, 0.62)
     for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
-        ax.plot([row["cost ratio"], 12], [y, place], color=GREY, lw=0.4, zorder=0)
+        ax.plot([row["cost ratio"], 7.5], [y, place], color=GREY, lw=0.4, zorder=0)
         name = known[row["effect"]][0].split(" (")[0]
         ax.text(
-            12.8,
+            8,
             place,
             f"{name}: {row['scene']}",
             fontsize=6,

@@ -179,7 +179,8 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     """
     cases = frame.drop_duplicates("case").set_index("case")["group"]
     height, width = TALLEST, PAGE_WIDTH
-    fig = sheet("Stability in hard cases", [], height, laid_out=False)
+    ends = ", ".join(tally(frame[frame["method"] == DEFAULT]))
+    fig = sheet(f"{len(cases)} hard cases: {ends}", [], height, laid_out=False)
     picked = int((~cases.index.str.match(r"\d+: ")).sum())
     intro = (
         f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md lists "

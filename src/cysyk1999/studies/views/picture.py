@@ -277,10 +277,9 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
     *instants, whole = frame["panel"].unique()
     stuck = _of(frame, whole).sort_values(DISTANCE)
     gone = stuck.loc[stuck[STICKING] < 5, DISTANCE].min()
-    title = (
-        f"Less than 5 % of the load sticks after {n(gone)} mm of a stroke; from there on "
-        f"{n(stuck.loc[stuck[DISTANCE] >= gone, STICKING].mean())} % stick in the mean"
-    )
+    most = stuck.loc[stuck[DISTANCE] >= gone, STICKING].max()
+    rest = f"at most {n(most)} % of the load sticks" if most > 0.5 else "the whole contact slips"
+    title = f"After {n(gone)} mm of a stroke {rest}"
     fig = study_figure(title, [note], 3.6)
     grid = fig.add_gridspec(2, len(instants), height_ratios=[1.5, 1])
     looks = {
