@@ -60,7 +60,9 @@ def history(scene):
     with np.errstate(all="ignore"):
         share = np.nan_to_num(np.abs(x) / half[:, None], nan=9, posinf=9)
     receptors = [(d, o) for d in (600e-6, 915e-6) for o in (0.0, 1e-3)]
+    skin_ends = scene.specimen.outline.epidermis_thickness
     energy = np.array([0.05 * middle * np.exp(-o / 2e-3) * 600e-6 / d for d, o in receptors]).T
+    energy *= [1.0 if d < skin_ends else 10.0 for d, _ in receptors]
     outputs, skin = ("time",), ("time", "skin_node")
     data = {
         "force": (outputs, load),
@@ -85,10 +87,10 @@ def history(scene):
     return xr.Dataset(data, places, {"estimated_error": 0.02 + 1e-5 * curvature})
 
 
-def made_up(folder, samples, seed=3):
+def made_up(folder, samples, seed=3, over=OVER):
     """The folder of a sweep whose histories are the made-up pad's."""
     keys = {"design": "sobol", "samples": samples, "seed": seed, "histories": True}
-    read = load_sweep({"over": OVER, **keys}, "made_up", fingerpad.load_scene(SCENE))
+    read = load_sweep({"over": over, **keys}, "made_up", fingerpad.load_scene(SCENE))
     lay_out(read, folder, 1)
     (folder / "histories").mkdir()
     found = json.loads((folder / "design.json").read_text())
@@ -251,13 +253,38 @@ def test_outside_the_box_must_be_asked_for_and_has_no_band(pad):
     assert np.isnan(found.indentation_depth_error.values[1:]).all()
 
 
+def test_energies_jump_where_layers_meet(tmp_path):
+    """The made-up pad's energies are ten times as large below the epidermis, whose thickness is a
+    knob: each side has polynomials of its own.
+    """
+    thickness = "specimen.outline.epidermis_thickness"
+    axes = {k: OVER[k] for k in list(OVER)[:2]} | {thickness: {"range": ["0.5 mm", "1.2 mm"]}}
+    pad = fingerpad.emulate(made_up(tmp_path / "thick", 128, over=axes))
+    assert pad.pieces.keys() == {f"energy_root_{d}_{layer}" for d in (0, 1) for layer in (0, 1)}
+
+    def energies(thick):
+        asked = scene(specimen={"outline": {"epidermis_thickness": f"{thick} mm"}})
+        answer, true = pad.predict(asked), history(fingerpad.load_scene(asked))
+        wrong = answer.strain_energy_density[-1] / np.interp(
+            answer.time[-1], true.time, true.strain_energy_density[:, 0]
+        )
+        return answer.strain_energy_density[-1].values, float(wrong[0])
+
+    thin, wrong = energies(0.59)
+    thick, still = energies(0.61)
+    assert thin[0] / thick[0] == pytest.approx(10, rel=0.03)
+    assert wrong == pytest.approx(1, abs=0.02) and still == pytest.approx(1, abs=0.02)
+    rows = {row["quantity"]: row for row in pad.about["held_out"]}
+    assert rows["strain_energy_density"]["median"] < 0.01
+
+
 def test_a_file_gives_the_same_answers(pad, tmp_path):
     pad.save(tmp_path / "pad.emulator")
     again = load_emulator(tmp_path / "pad.emulator")
     xr.testing.assert_identical(again.predict(scene()), pad.predict(scene()))
     assert "code_sha256" in again.about["provenance"]
     with np.load(tmp_path / "pad.emulator", allow_pickle=False) as found:
-        assert json.loads(str(found["about"]))["format"] == 1
+        assert json.loads(str(found["about"]))["format"] == 2
 
 
 def test_the_commands_write_and_refuse(folder, tmp_path, capsys):

@@ -11,7 +11,7 @@ import yaml
 import fingerpad
 from fingerpad.emulator.explorer import page
 from test_browser import BROWSER, PHONE, walk
-from test_emulator import made_up
+from test_emulator import OVER, made_up
 
 pytestmark = pytest.mark.browser
 
@@ -64,7 +64,8 @@ def made(tmp_path_factory):
     if BROWSER is None:
         pytest.skip("no chromium here: apt-get install chromium")
     folder = tmp_path_factory.mktemp("explorer")
-    pad = fingerpad.emulate(made_up(folder / "sweep", 64))
+    thickness = {"specimen.outline.epidermis_thickness": {"range": ["0.5 mm", "1.2 mm"]}}
+    pad = fingerpad.emulate(made_up(folder / "sweep", 128, over=OVER | thickness))
     (folder / "site").mkdir()
     (folder / "site/explorer.html").write_text(page(pad), encoding="utf-8")
     driven = folder / "driven.html"
@@ -84,7 +85,7 @@ def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
     """What the page says of a scene, and what Python says of the scene that the page gives."""
     pad, _, result, _ = made
     looks = [look for look in result["found"] if not look["outside"]]
-    assert result["knobs"] == 5 and len(looks) > 12
+    assert result["knobs"] == 6 and len(looks) > 12
     for look in looks:
         scene = yaml.safe_load(look["scene"])
         scene["outputs"] = {"receptors": {"depths": ["600 um", "915 um"]}}

@@ -15,6 +15,7 @@ import numpy as np
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import SOONEST
 from fingerpad.emulator.model import LOGARITHMIC, PLACES, STRESSES, Emulator
+from fingerpad.emulator.question import borders, looked_up
 from fingerpad.receptors.laws import THESIS_RATE
 
 DIGITS = 9
@@ -86,6 +87,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         for name, group in emulator.groups.items()
     }
     law, base = THESIS_RATE, emulator.base
+    keys = {key for sums in borders(base) for key in sums}
     return {
         "knobs": [
             knob.record() | {"label": SHOWN.get(knob.key, knob.key)} for knob in emulator.knobs
@@ -100,6 +102,9 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "contact_length": base["specimen"]["contact_length"],
         "base": base,
         "groups": groups,
+        "pieces": emulator.pieces,
+        "borders": borders(base),
+        "thicknesses": {key: looked_up(base, key) for key in keys},
         "surfaces": list(SURFACES.items()),
         "scenes": emulator.about["scenes"],
         "law": {

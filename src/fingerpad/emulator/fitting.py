@@ -20,6 +20,7 @@ import xarray as xr
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import SOONEST, WARPS, basis, cubic_weights, exponents, held
 from fingerpad.emulator.model import (
+    ENERGY,
     LOGARITHMIC,
     PLACES,
     SCALARS,
@@ -108,10 +109,10 @@ def emulate(sweep: str | Path) -> Emulator:
     moments = _moments(folder, base)
     histories = list(_histories(folder, design, len(knobs)))
     samples, grids, lost = _samples(histories, base, moments)
-    if len(samples.points) < 4 * len(knobs) + 4:
+    if len(samples.points) < _least(knobs):
         raise SceneError(
             f"{folder}: has {len(samples.points)} scenes that can be emulated; "
-            f"allowed: {4 * len(knobs) + 4} or more"
+            f"allowed: {_least(knobs)} or more"
         )
     about = design["about"] | {"scenes": len(samples.points), "scenes_left_out": lost}
     knobs = _warped(knobs, samples)
@@ -225,7 +226,7 @@ def _row(history: xr.Dataset, moments: Moments, grids: Mapping[str, np.ndarray])
     for name in SCALARS:
         row[name] = np.exp(at(np.log(history[name].values)))
     load = history.force.values
-    row["energy_root"] = at(np.sqrt(history.strain_energy_density.values) / load[:, None])
+    row[ENERGY] = at(np.sqrt(history.strain_energy_density.values) / load[:, None])
     shape = _pressure_shapes(history, load)
     row["pressure_shape"] = at(shape)
     depth = history.indentation_depth.values
@@ -340,41 +341,64 @@ def _fit(samples: Samples, knobs, base, moments, grids, about) -> Emulator:
     """An emulator of samples, with the errors of scenes left out."""
     powers = _powers(len(knobs))
     terms = basis(scaled(knobs, samples.points), powers)
-    some, groups = slice(0, SEARCHED), {}
-    for name, values in samples.values.items():
-        flat = values.reshape(len(values), -1)
-        target = np.log(flat) if name in LOGARITHMIC else flat
-        mean = target.mean(axis=0)
-        parts, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
-        rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
-        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
-        scores = parts[:, :count] * sizes[:count]
-        how = _chosen(terms[some], powers, scores[some])
-        missed, found = _regressed(terms, powers, *how, scores)
-        miss = target - mean - (scores - missed) @ rows[:count]
-        rank = min(int(np.ceil((len(miss) + 1) * COVERED)), len(miss)) - 1
-        band = np.sort(np.abs(miss), axis=0)[rank]
-        groups[name] = Group(values.shape[1:], mean, rows[:count], found, band)
-    return Emulator(knobs, base, moments, grids, powers, groups, about)
+    made = Emulator(knobs, base, moments, grids, powers, {}, about)
+    groups = {
+        name: _group(terms, powers, values, name in LOGARITHMIC)
+        for name, values in samples.values.items()
+        if name != ENERGY
+    }
+    layers, of = made.layers(samples.points), grids["receptor_depth"]
+    for k, depth in enumerate(np.unique(of)):
+        for layer in np.unique(layers[:, k]):
+            rows = layers[:, k] == layer
+            if rows.sum() > len(knobs) + 1:
+                values = samples.values[ENERGY][rows][..., of == depth]
+                groups[f"{ENERGY}_{k}_{layer}"] = _group(terms[rows], powers, values, False)
+    return replace(made, groups=groups)
+
+
+def _least(knobs: list[Knob]) -> int:
+    """Scenes that a fit needs."""
+    return 4 * len(knobs) + 4
+
+
+def _group(terms: np.ndarray, powers: np.ndarray, values: np.ndarray, logarithmic: bool) -> Group:
+    """Polynomials of the principal components of a quantity, (n, ...) values at (n, terms)."""
+    flat = values.reshape(len(values), -1)
+    target = np.log(flat) if logarithmic else flat
+    mean = target.mean(axis=0)
+    parts, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
+    rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
+    count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
+    scores = parts[:, :count] * sizes[:count]
+    how = _chosen(terms[:SEARCHED], powers, scores[:SEARCHED])
+    missed, found = _regressed(terms, powers, *how, scores)
+    miss = target - mean - (scores - missed) @ rows[:count]
+    rank = min(int(np.ceil((len(miss) + 1) * COVERED)), len(miss)) - 1
+    band = np.sort(np.abs(miss), axis=0)[rank]
+    return Group(values.shape[1:], mean, rows[:count], found, band)
 
 
 def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
     """How far an emulator is off for scenes that it was not fitted to, a row a quantity.
 
-    Relative errors at the last moment; of energies under the middle. ``covered`` is the share
-    within the emulator's own band, at all moments and receptors.
+    Relative errors at the last moment; of energies under the middle, at all depths together.
+    ``covered`` is the share within the emulator's own band, at all moments and receptors.
     """
     found, rows = emulator.values(unseen.points), []
     middle = emulator.grids["receptor_offset"] == 0
-    for name in (*LOGARITHMIC, "energy_root"):
+    for name in (*LOGARITHMIC, ENERGY):
         ratio, miss = found[name] / unseen.values[name], found[name] - unseen.values[name]
         if name in LOGARITHMIC:
             miss = np.log(ratio)
-        inside = np.abs(miss) <= emulator.groups[name].band.reshape(miss.shape[1:])
         last = ratio[:, -1]
-        if name == "energy_root":
-            name, last = "strain_energy_density", last[:, middle] ** 2
-        off = np.abs(last - 1)
+        if name == ENERGY:
+            band, last = emulator.energy_band(unseen.points), last[:, middle] ** 2
+            name = "strain_energy_density"
+        else:
+            band = emulator.groups[name].band.reshape(miss.shape[1:])
+        inside = np.abs(miss) <= band
+        off = np.abs(last[np.isfinite(last)] - 1)
         row = {"quantity": name, "scenes": len(miss), "median": float(np.median(off))}
         row |= {"within_95": float(np.quantile(off, 0.95)), "covered": float(inside.mean())}
         rows.append(row)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -14,12 +15,13 @@ import xarray as xr
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import basis, cubic_weights, held
-from fingerpad.emulator.question import Knob, Question, ask
+from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
 
 SCALARS = ("indentation_depth", "contact_width", "peak_pressure", "centre_pressure")
 LOGARITHMIC = (*SCALARS, "estimated_error")
+ENERGY = "energy_root"
 UNITS = {
     "indentation_depth": "m",
     "contact_width": "m",
@@ -37,7 +39,7 @@ PLACES = np.sin(np.pi / 2 * np.linspace(0, 1, 25))
 """Shares of the contact's half width, denser towards its edge."""
 NODES = 161
 """Skin nodes of an answer."""
-FORMAT = 1
+FORMAT = 2
 _CHUNK = 20_000
 
 
@@ -72,8 +74,9 @@ class Group:
     """The polynomials of one quantity.
 
     The quantities are `LOGARITHMIC` ones; ``pressure_shape``, pressure over the mean pressure at
-    `PLACES`; ``skin_displacement_x`` and ``_y`` over the depth; ``energy_root``, the root of the
-    strain energy density over the line load.
+    `PLACES`; ``skin_displacement_x`` and ``_y`` over the depth; ``energy_root_<depth>_<layer>``,
+    the root of the strain energy density over the line load at receptors of a depth, counted from
+    0, in scenes in which a layer holds them: it jumps where layers meet.
 
     Attributes
     ----------
@@ -170,7 +173,14 @@ class Emulator:
         dict
             Name -> (n, k, ...) values, SI.
         """
-        names = tuple(self.groups) if names is None else names
+        names = self.quantities if names is None else names
+        if ENERGY in names:
+            pieces = tuple(self.pieces)
+            others = tuple(name for name in names if name != ENERGY)
+            found = self.values(points, (*others, *pieces), weights)
+            return self._joined(points, {name: found[name] for name in pieces}) | {
+                name: found[name] for name in others
+            }
         folded = {
             name: self.groups[name].folded(None if name == "estimated_error" else weights)
             for name in names
@@ -186,6 +196,57 @@ class Emulator:
             wanted = (n for n in names if n != "estimated_error")
             shapes |= {n: (-1, len(weights), *self.groups[n].shape[1:]) for n in wanted}
         return {n: np.concatenate(p).reshape(shapes[n]) for n, p in parts.items()}
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Names of what is emulated; the parts of ``energy_root`` count once."""
+        return (*(name for name in self.groups if name not in self.pieces), ENERGY)
+
+    @cached_property
+    def pieces(self) -> dict[str, tuple[int, int]]:
+        """Name of each part of ``energy_root`` -> its depth, counted from 0, and its layer."""
+        parts = (name.rsplit("_", 2) for name in self.groups if name.startswith(ENERGY))
+        return {f"{ENERGY}_{depth}_{layer}": (int(depth), int(layer)) for _, depth, layer in parts}
+
+    def layers(self, points: np.ndarray) -> np.ndarray:
+        """The layer (n, depths), counted from 0 at the skin, that holds receptors at points (n,
+        knobs).
+        """
+        points, column = np.asarray(points, float), {k.key: i for i, k in enumerate(self.knobs)}
+        depths = np.unique(self.grids["receptor_depth"])
+        found = np.zeros((len(points), len(depths)), int)
+        for keys in borders(self.base):
+            at = sum(
+                points[:, column[key]] if key in column else looked_up(self.base, key)
+                for key in keys
+            )
+            found += np.reshape(at, (-1, 1)) < depths
+        return found
+
+    def _joined(self, points: np.ndarray, parts: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """``energy_root`` (n, ..., receptors) of its parts (n, ..., offsets); NaN where scenes were
+        too few to fit one.
+        """
+        depths, which = np.unique(self.grids["receptor_depth"], return_inverse=True)
+        layers = self.layers(points)
+        some = next(iter(parts.values()))
+        found = np.full((len(points), *some.shape[1:-1], len(which)), np.nan)
+        for name, value in parts.items():
+            depth, layer = self.pieces[name]
+            rows = np.flatnonzero(layers[:, depth] == layer)
+            found[np.ix_(rows, *map(np.arange, found.shape[1:-1]), which == depth)] = value[rows]
+        return {ENERGY: found}
+
+    def energy_band(self, points: np.ndarray) -> np.ndarray:
+        """Half width (n, moments, receptors) of the band of ``energy_root`` at points."""
+        bands = {
+            name: np.broadcast_to(
+                self.groups[name].band.reshape(self.groups[name].shape),
+                (len(points), *self.groups[name].shape),
+            )
+            for name in self.pieces
+        }
+        return self._joined(points, bands)[ENERGY]
 
     def predict(
         self, scene: Scene | str | Path | Mapping[str, Any], extrapolate: bool = False
@@ -230,7 +291,7 @@ class Emulator:
         skin = {n: np.interp(near, grids["arc"], grids[n]) for n in ("skin_x", "skin_y")}
         skin["skin_x"] *= np.sign(arc)
         data: dict[str, Any] = {"force": ("time", load), "leg": ("time", leg)}
-        bands = self._bands(weights, bool(asked.outside))
+        bands = self._bands(weights, asked)
         for name in SCALARS:
             values = found[name] * (asked.modulus if name in STRESSES else 1.0)
             data[name] = "time", values
@@ -270,19 +331,19 @@ class Emulator:
         number = np.concatenate([np.zeros(len(press), int), np.ones(len(held_at), int)])
         return share, since, top * share + since, number
 
-    def _bands(self, weights: np.ndarray, unknown: bool) -> dict[str, np.ndarray]:
+    def _bands(self, weights: np.ndarray, asked: Question) -> dict[str, np.ndarray]:
         """Half width of the band of each quantity at weighted moments, relative where it is
         emulated in its logarithm; NaN where nothing is known.
         """
         near = np.maximum(weights, 0.0)
         near /= near.sum(axis=1, keepdims=True)
-        found = {}
+        found, known = {}, np.nan if asked.outside else 1.0
         for name, group in self.groups.items():
-            if name == "estimated_error":
+            if name == "estimated_error" or name in self.pieces:
                 continue
             band = np.tensordot(near, group.band.reshape(group.shape), 1)
-            band = np.expm1(band) if name in LOGARITHMIC else band
-            found[name] = band * (np.nan if unknown else 1.0)
+            found[name] = known * (np.expm1(band) if name in LOGARITHMIC else band)
+        found[ENERGY] = known * np.tensordot(near, self.energy_band(asked.point[None])[0], 1)
         return found
 
     def _receptors(self, asked: Question) -> list[int]:

@@ -75,6 +75,36 @@ function atMoment(flat, weights) {
   return found;
 }
 
+// The layer, counted from 0 at the skin, that holds the receptors of each depth.
+function layers(own, depths) {
+  const at = key => {
+    const k = model.knobs.findIndex(knob => knob.key === key);
+    return k < 0 ? model.thicknesses[key] : own[k];
+  };
+  const ends = model.borders.map(keys => keys.reduce((sum, key) => sum + at(key), 0));
+  return depths.map(depth => ends.filter(end => end < depth).length);
+}
+
+// Numbers of a list; energies of a layer that too few scenes had are none.
+const known = values => values.filter(Number.isFinite);
+
+// Energies jump where layers meet: of each depth the part whose layer holds its receptors, joined.
+function joinEnergies(found, own) {
+  const all = model.grids.receptor_depth, depths = [...new Set(all)].sort((a, b) => a - b);
+  const holds = layers(own, depths);
+  for (const end of ["", "_band"]) {
+    const rows = end ? [0] : found.time;
+    const joined = rows.map(() => all.map(() => NaN));
+    for (const [name, [depth, layer]] of Object.entries(model.pieces)) {
+      if (holds[depth] !== layer) continue;
+      const places = all.map((d, k) => k).filter(k => all[k] === depths[depth]);
+      const values = end ? [found[name + end]] : found[name];
+      values.forEach((row, m) => places.forEach((k, j) => { joined[m][k] = row[j]; }));
+    }
+    found["energy_root" + end] = end ? joined[0] : joined;
+  }
+}
+
 // The answer to { values: {key: SI value}, modulus, hold }.
 function answer(state) {
   const own = model.knobs.map(k => state.values[k.key] / (k.key === FORCE || k.key === RATE ? state.modulus : 1));
@@ -98,6 +128,7 @@ function answer(state) {
     const band = atMoment(group.band, even);
     found[name + "_band"] = group.logarithmic ? band.map(Math.expm1) : band;
   }
+  joinEnergies(found, own);
   const loads = moments.map(m => m.share * state.values[FORCE] / state.modulus / model.contact_length);
   found.strain_energy_density = found.energy_root.map((row, m) => row.map(r => state.modulus * (r * loads[m]) ** 2));
   const roots = found.energy_root[moments.length - 1].map(Math.abs);
@@ -327,7 +358,7 @@ function draw() {
     const cells = [`${row.value.toPrecision(4)} ${row.unit}`, `\u00b1 ${row.band.toPrecision(2)} ${row.unit}`];
     line.append(head, ...cells.map(text => {
       const cell = document.createElement("td");
-      cell.textContent = unknown ? "\u2013" : text;
+      cell.textContent = unknown || Number.isNaN(row.value) ? "\u2013" : text;
       return cell;
     }));
     return line;
@@ -397,8 +428,9 @@ function drawSection(found) {
     if (root > 0) solid.push([px(x), py(tip + (1 - Math.sqrt(root)) / Math.max(curvature, 1e-9))]);
   }
   const ends = [[solid[solid.length - 1][0], -20], [solid[0][0], -20]];
-  const energies = found.strain_energy_density[last], most = Math.max(...energies), discs = [];
+  const energies = found.strain_energy_density[last], most = Math.max(...known(energies)), discs = [];
   energies.forEach((energy, k) => {
+    if (!Number.isFinite(energy)) return;
     const d = model.grids.receptor_depth[k], x = model.grids.receptor_offset[k];
     for (const side of x > 0 ? [-1, 1] : [1]) {
       discs.push(shape("circle", { cx: px(side * interp(x, restX, right.map(p => p[0]))), cy: py(interp(x, restX, right.map(p => p[1])) - d), r: 1.5 + 9 * Math.sqrt(energy / most),
@@ -431,16 +463,17 @@ function drawPressure(found) {
 function drawEnergy(found) {
   const last = found.indentation_depth.length - 1, energies = found.strain_energy_density[last], band = found.strain_energy_density_band;
   const { receptor_depth: depths, receptor_offset: offsets } = model.grids, lines = [...new Set(depths)];
-  const most = Math.max(...energies.map((e, k) => e * (1 + band[k])));
+  const most = Math.max(...known(energies.map((e, k) => e * (1 + band[k]))));
   const picture = axes("energy", [0, Math.max(...offsets) * 1e3 || 1], [0, most], "distance from the middle (mm)", "strain energy (Pa)");
   lines.forEach((depth, n) => {
-    const own = depths.map((d, k) => k).filter(k => depths[k] === depth);
+    const own = depths.map((d, k) => k).filter(k => depths[k] === depth && Number.isFinite(energies[k]));
+    if (!own.length) return;
     picture.band(own.map(k => [offsets[k] * 1e3, energies[k] * (1 - Math.min(band[k], 1))]), own.map(k => [offsets[k] * 1e3, energies[k] * (1 + band[k])]));
     picture.line(own.map(k => [offsets[k] * 1e3, energies[k]]), n);
     picture.svg.append(shape("line", { x1: 285, x2: 315, y1: 20 + 16 * n, y2: 20 + 16 * n, stroke: LINES[n % 4], "stroke-width": 2, "stroke-dasharray": DASHES[n % 4] }),
       shape("text", { x: 320, y: 24 + 16 * n }, `${Math.round(depth * 1e6)} \u00b5m`));
   });
-  describe("energy", `Strain energy under the skin, at most ${Math.max(...energies).toPrecision(3)} Pa.`);
+  describe("energy", `Strain energy under the skin, at most ${Math.max(...known(energies)).toPrecision(3)} Pa.`);
 }
 
 function marker(picture, time) {
@@ -450,8 +483,8 @@ function marker(picture, time) {
 function drawTime(found, whole) {
   const depths = [...new Set(model.grids.receptor_depth)], end = whole.time[whole.time.length - 1];
   const traces = depths.map(d => whole.strain_energy_density.map(row => row[receptor(d, 0)]));
-  const picture = axes("time", [0, end], [0, Math.max(...traces.flat())], "time (s)", "strain energy (Pa)");
-  traces.forEach((trace, k) => picture.line([[0, 0], ...trace.map((e, m) => [whole.time[m], e])], k));
+  const picture = axes("time", [0, end], [0, Math.max(...known(traces.flat()))], "time (s)", "strain energy (Pa)");
+  traces.forEach((trace, k) => Number.isFinite(trace[0]) && picture.line([[0, 0], ...trace.map((e, m) => [whole.time[m], e])], k));
   marker(picture, found.time[found.time.length - 1]);
   describe("time", "Strain energy under the middle over time, a line each depth.");
 }

@@ -103,6 +103,39 @@ def path_of(key: str) -> tuple[str | int, ...]:
     return tuple(int(word) if word.isdigit() else word for word in words)
 
 
+def borders(base: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """Keys whose sum is the depth of each border between two layers of a scene's specimen.
+
+    Strain energy jumps there.
+
+    Examples
+    --------
+    >>> borders({"specimen": {"outline": {}, "layers": {"epidermis": {}, "dermis": {}}}})[0]
+    ('specimen.outline.epidermis_thickness',)
+    """
+    specimen = base["specimen"]
+    for shape in ("slab", "half_round"):
+        if specimen.get(shape):
+            layers = range(len(specimen[shape]["layers"]))
+            keys = [f"specimen.{shape}.layers[{k}].thickness" for k in layers]
+            return [tuple(keys[: k + 1]) for k in layers[:-1]]
+    if specimen.get("mesh"):
+        return []
+    horny, skin, below = (
+        f"specimen.outline.{layer}_thickness"
+        for layer in ("stratum_corneum", "epidermis", "dermis")
+    )
+    first = [(horny,)] if "stratum_corneum" in specimen["layers"] else []
+    return [*first, (skin,), (skin, below)]
+
+
+def looked_up(document: Mapping[str, Any], key: str) -> Any:
+    """The value of a dotted key."""
+    for word in path_of(key):
+        document = document[word]
+    return document
+
+
 def flattened(part: Any, path: tuple = ()) -> dict[tuple, Any]:
     """Path -> plain value of all that a scene says."""
     if isinstance(part, Mapping) and part:

@@ -11,7 +11,7 @@ import os
 import tempfile
 import time
 from collections.abc import Iterable, Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -251,9 +251,13 @@ def _apart(
 
 @cache
 def _effort(neighbour: str) -> float:
-    """Iterations a step of an easy case, which many cases may have as their neighbour."""
+    """Iterations a step of an easy case, which many cases may have as their neighbour; nan where
+    it goes through its own pad.
+    """
     scene, steps = json.loads(neighbour)
-    return iterations(_simulate(Case("neighbour", "", "", scene, steps=steps))[0])
+    with suppress(NonConvergence):
+        return iterations(_simulate(Case("neighbour", "", "", scene, steps=steps))[0])
+    return np.nan
 
 
 def judged(case: Case, history: xr.Dataset, measured: Mapping[str, float]) -> Run:
