@@ -99,8 +99,10 @@ NOT_YET = {
     f"figures/tables/accuracy_turned{of}.{kind}"
     for of in ("", "_planner")
     for kind in ("csv", "md")
-}
-"""Tables whose jobs have not run whole: the planner's errors of bodies of revolution."""
+} | {f"figures/tables/stability_unseen.{kind}" for kind in ("csv", "md")}
+"""Tables whose jobs have not run whole: the planner's errors of bodies of revolution, and how
+drawn hard cases end.
+"""
 BY_HAND = {"speed", "sweeps", "soak", "profile_convention"}
 """What commands beside the workflow make."""
 
