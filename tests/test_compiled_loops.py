@@ -1,6 +1,7 @@
 """Compiled loops: kept once for each law and element, told of while they compile."""
 
 import os
+import shutil
 import subprocess
 import sys
 from contextlib import nullcontext
@@ -111,3 +112,26 @@ def test_loops_of_a_law_from_elsewhere_are_not_kept():
     foreign = replace(NEO_HOOKE, name="mine", stress=lambda i1, jac, mu, constants: (mu, 1.0))
     assert kernels.loops(foreign, PLANE_STRAIN, 9, 9, 3).commit.stats.cache_path is None
     assert kernels.loops(NEO_HOOKE, PLANE_STRAIN, 9, 9, 3).commit.stats.cache_path is not None
+
+
+@pytest.mark.slow
+def test_a_first_scene_needs_no_more_than_set_up_compiles(tmp_path):
+    """The last step of set-up, in a tree as cloned: without .pyc."""
+    root = Path(__file__).parents[1]
+    for folder in ("src", "workflow/scripts", "config/scenes", "config/specimens"):
+        ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
+        shutil.copytree(root / folder, tmp_path / folder, ignore=ignored)
+    _, _, step = (root / "workflow/scripts/setup.sh").read_text().partition("say 5 ")
+    env = os.environ | {"PYTHONPATH": str(tmp_path / "src"), "run": sys.executable}
+    for unwanted in ("NUMBA_CACHE_DIR", "PYTHONDONTWRITEBYTECODE"):
+        env.pop(unwanted, None)
+    scene = """if True:
+        import fingerpad
+        from fingerpad.compiled import compiling
+        fingerpad.simulate("config/scenes/ramp40_k210.yaml")
+        print(compiling())
+    """
+    here = {"cwd": tmp_path, "env": env, "check": True, "capture_output": True, "text": True}
+    subprocess.run(["sh", "-ec", f"say() {{ :; }}; venv=.; say 5 {step}"], **here)
+    done = subprocess.run([sys.executable, "-c", scene], **here)
+    assert float(done.stdout) == 0.0
