@@ -60,8 +60,5 @@ say 5 "compile the solver's loops for this machine (half a minute)"
 # Python's own compiled files first: numba knows a loop by them, and those that a first import writes
 # are not the same, so that a second run would compile again.
 "$run" -m compileall -q src
-# Numba finds a loop again by its bytes, which differ between modules read from source and from .pyc:
-# what is compiled now must be of those that later processes read.
-"$run" -m compileall -q src
 "$run" workflow/scripts/compile_kernels.py
 echo "set-up: done, in $venv"
