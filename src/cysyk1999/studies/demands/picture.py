@@ -184,7 +184,8 @@ def effects(frame: DataFrame) -> Figure:
     )
     note = (
         "Simulated: the largest change of any headline quantity over its largest value, in scenes "
-        "of the catalogue and drawn at random; cost of a run with the effect over without."
+        "of the catalogue and drawn at random; cost of a run with the effect over without. Half "
+        "the pad: how wrong it is, used where the plan uses it and where it does not."
     )
     fig = study_figure(title, [note], 3.1)
     ax = fig.subplots()
