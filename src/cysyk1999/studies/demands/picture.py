@@ -131,13 +131,18 @@ def stability(frame: DataFrame) -> Figure:
     """One bar a kind of hardness."""
     counts = frame.set_index("group")[list(ENDS)]
     total = counts.sum()
+    said = total["admits its error"] + total["fails cleanly"]
+    ends = {"are stable": total["stable"], "heal": total["healed"], "labour": total["labours"]}
+    ends["stop or say that they are wrong"] = said
+    listed = ", ".join(f"{count} {words}" for words, count in ends.items() if count)
+    wrong = total["wrong"] or "none"
     title = (
-        f"Of {total.sum()} hard cases {total['stable']} are stable, {total['healed']} heal, "
-        f"{total['labours']} labour, "
-        f"{total['admits its error'] + total['fails cleanly']} stop or say that they are wrong, "
-        f"and {total['wrong'] or 'none'} {'are' if total['wrong'] > 1 else 'is'} silently wrong"
+        f"Of {total.sum()} hard cases {listed}, and {wrong} "
+        f"{'are' if total['wrong'] > 1 else 'is'} silently wrong"
     )
-    fig = study_figure(title, ["Simulated: the catalogue of hard cases, on a draft's mesh."], 4.2)
+    fig = study_figure(
+        title, ["Simulated: the catalogue of hard cases, on a draft's mesh, as planned."], 4.2
+    )
     ax, start = fig.subplots(), np.zeros(len(counts))
     for outcome, words in ENDS.items():
         if total[outcome]:
