@@ -140,9 +140,9 @@ def stability(frame: DataFrame) -> Figure:
         f"Of {total.sum()} hard cases {listed}, and {wrong} "
         f"{'are' if total['wrong'] > 1 else 'is'} silently wrong"
     )
-    fig = study_figure(
-        title, ["Simulated: the catalogue of hard cases, on a draft's mesh, as planned."], 4.2
-    )
+    how = "with what a run relaxes by itself" if total["healed"] else "as planned"
+    note = f"Simulated: the catalogue of hard cases, on a draft's mesh, {how}."
+    fig = study_figure(title, [note], 4.2)
     ax, start = fig.subplots(), np.zeros(len(counts))
     for outcome, words in ENDS.items():
         if total[outcome]:
