@@ -46,6 +46,7 @@ from fingerpad.planning.unbounded import (
     ends_unbounded,
     in_words,
     seen_corners,
+    unseen_error,
 )
 from fingerpad.processes import told_in_a_notebook
 from fingerpad.receptors.material_points import MaterialPoints
@@ -92,6 +93,9 @@ MIN_DET_F_WARNING = 0.1
 MAX_UNEVEN_WARNING = 0.15
 #: How often a step that failed is gone on with from its last good state.
 PATIENCE = 1
+#: Force out of balance, over that of the contact, that a body of revolution leaves: a point beside
+#: the axis may carry no more than a ten-thousandth of it.
+ROUND_TOLERANCE = 1e-5
 #: Bulk over shear modulus above which the tangent needs double precision.
 MAX_BULK_SINGLE = 200.0
 
@@ -181,6 +185,8 @@ class Simulation:
             observers.append(self.fields)
         soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
         settings = NewtonSettings(single=soft and not plan.relaxed.precise)
+        if self.kinematics.round:
+            settings = replace(settings, force_tolerance=ROUND_TOLERANCE)
         if plan.newton_tolerance:
             settings = replace(settings, force_tolerance=plan.newton_tolerance)
         self.stepper = QuasiStatic(
@@ -368,6 +374,7 @@ class Simulation:
         for k in ends:
             few = self.sides * np.count_nonzero(records[k].nodal_force) < 4
             error = max(self._error_at(width[k], stroke), lost, 0.5 if few else 0.0)
+            error = max(error, self._unseen(records[k]))
             largest = int(np.argmax(force[: k + 1]))
             if force[k] < UNLOADED_FORCE * force[largest] and width[k] < width[largest]:
                 error *= width[k] / width[largest]
@@ -409,11 +416,7 @@ class Simulation:
         if self.plan.unresolved_edge:
             corners = self.profile.tangents()
         else:
-            pressure, half_width = (record.nodal_force / record.length).max(), np.ptp(x) / 2
-            there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))
-            corners = seen_corners(
-                self.corners[there], self.modulus, pressure, self.skin.spacing, half_width
-            )
+            corners = seen_corners(*self._corners(record, x))
         if len(corners):
             corners = corners[[np.abs(x - corner).min() <= near for corner in corners]]
         places = list(in_words(self.profile, corners))
@@ -422,6 +425,20 @@ class Simulation:
                 end = self.mesh.points[node, 0] * 1e3
                 places.append(f"the end of the skin at x = {end:.4g} mm")
         return Unbounded(tuple(places), bool(np.any(np.abs(corners - record.distance) <= 2 * near)))
+
+    def _corners(self, record, x):
+        """What :func:`seen_corners` has to know of a state that touches the profile at x (k,) m."""
+        near, pressure = self.plan.contact_edge, (record.nodal_force / record.length).max()
+        there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))
+        known = self.modulus, pressure, self.skin.spacing, np.ptp(x) / 2
+        return self.corners[there], *known
+
+    def _unseen(self, record) -> float:
+        """Error because of the corners between the points of a profile that is turned."""
+        _, x = self._touching(record)
+        if not (self.scene.axisymmetric and self.scene.stimulus.irregular and len(x)):
+            return 0.0
+        return unseen_error(*self._corners(record, np.concatenate([x, -x])))
 
     def _touching(self, record):
         """Nodes of the skin that touch (k,), and where on the profile they are (k,), m."""

@@ -18,9 +18,11 @@ from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.files import read_specimen_mesh
 from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import PadMesh
+from fingerpad.stimuli.shapes.flat import Flat
 
 _USUAL_FORCE = 0.01  # N, with which a finger touches
 _BENDS, _SAME = 30, 1e-3  # steps in which a cone's bend over its contact is found, and how well
+_INSIDE = 1.3  # times the contact, a face is not pressed to its edges
 _FLATTER = 0.8  # pieces less than so much narrower than the contact are the contact
 
 
@@ -47,8 +49,9 @@ def case_of(scene: Scene, rules: Rules, narrowest: float | None = None) -> Case:
     # the sharpest convexity
     curved = case.moves or not profile.uneven
     contact = worst_contact(case, profile.convexity if curved else 0.0)
-    case = replace(case, contact=contact)
-    case = replace(case, contact=replace(contact, narrowest=_narrowest(case, narrowest)))
+    case = _within_face(replace(case, contact=contact))
+    narrow = _narrowest(case, narrowest)
+    case = replace(case, contact=replace(case.contact, narrowest=narrow))
     _check_width(case)
     return case
 
@@ -116,6 +119,17 @@ def worst_contact(case: Case, curvature: float) -> ContactEstimate:
         wide = max(worst.half_width, profile.face)
         worst = replace(worst, half_width=wide, strain=max(worst.strain, 0.5))
     return worst
+
+
+def _within_face(case: Case) -> Case:
+    """The case with a plate for a profile whose face the contact is well inside of."""
+    face = case.profile.face - case.profile.edge_radius
+    if case.moves or not np.isfinite(face):
+        return case
+    plate = replace(case, profile=Flat())
+    contact = worst_contact(plate, 0.0)
+    inside = _INSIDE * contact.half_width < face
+    return replace(plate, contact=contact) if inside else case
 
 
 def _narrowest(case: Case, found: float | None) -> float | None:

@@ -20,6 +20,7 @@ from fingerpad.scenes.scene import Discretisation, Scene
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import touched_side
 from fingerpad.specimen.pad import MeshSize, PadMesh, all_over, skin_chain
+from fingerpad.stimuli.profile import Profile
 
 _THIN = 1e-3  # m, of layers altogether, below which presets are in their size
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
@@ -28,6 +29,7 @@ _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
 _NEAR = 0.15
 _MOST_COLUMNS = 2000  # of refined elements to either side
 _WIDER = 1.2  # than a contact is estimated to be, the mesh is as fine as it is there
+_TIP = (0.1, 0.5, 1.0)  # of the radius of a tip on the axis, where the mesh is made for it
 _STAGE = 2.0**0.25  # by how much finer a mesh is in a contact, if at all
 
 
@@ -199,6 +201,12 @@ def mesh_size_for(case: Case, preset: Preset, widest: float, friction: float | N
         # what is read of a stroke is read there: centre pressure and what it does to receptors
         middle = _WIDER * max(rules.stroked_middle, offsets)
         focus = all_over(middle, rules.stroked_share * preset.skin_edge)
+    finest = min([preset.skin_edge, *(edge for _, edge in focus)])
+    felt = scene.stimulus.felt(finest)
+    tip = tip_edge(case, felt, preset.tolerance) if chosen else np.inf
+    if tip < finest:
+        focus += at_tip(felt.tip, tip)
+        radial = min(tip, radial or preset.layer_edge)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -207,6 +215,13 @@ def mesh_size_for(case: Case, preset: Preset, widest: float, friction: float | N
         focus=focus,
         skin_radial_edge=radial,
     )
+
+
+def at_tip(tip: float, edge: float) -> tuple[tuple[float, float], ...]:
+    """A mesh size's ``focus`` with that ``edge`` (m) over a tip (m) on the axis: beside the axis
+    itself, where the edge is that of the contact.
+    """
+    return tuple((share * tip, edge) for share in _TIP)
 
 
 def _wander(case: Case, friction: float | None) -> float:
@@ -265,6 +280,50 @@ def edges_error(case: Case, edge: float) -> tuple[float, str]:
         )
     said = f"edges of {micrometres(edge)} um on {micrometres(case.rounding)} um of a rounded edge"
     return _fillet_error(case, edge), said
+
+
+def _on_tip(case: Case, profile: Profile) -> float:
+    """Share of the pressure that the tip of a profile on the axis brings to where it is round; 0:
+    there is none, or the contact is no wider.
+
+    Under a cone of slope s pressure grows towards its tip as E* s / 2 arcosh(half width / radius)
+    (Sneddon 1948).
+    """
+    half_width = case.contact.half_width
+    if not case.scene.axisymmetric or not 0 < profile.tip < half_width:
+        return 0.0
+    cone = case.pad.stiff * profile.flank / 2
+    hertz = 1.5 / np.pi * case.force / half_width**2
+    return float(cone / max(hertz, cone / 2 * np.log(2 * half_width / profile.tip)))
+
+
+def tip_edge(case: Case, profile: Profile, tolerance: float) -> float:
+    """Element edge (m) at a tip on the axis that is wrong by a tolerance; without bound where there
+    is none.
+    """
+    rules, share = case.rules, _on_tip(case, profile)
+    if not share:
+        return np.inf
+    error = tolerance / share
+    if error < rules.tip_error:
+        edges = (error / rules.tip_error) ** (1 / rules.tip_order)
+    else:
+        edges = np.exp(min(error - rules.tip_error, 99.0))
+    return float(max(edges * profile.tip, rules.least_edge))
+
+
+def tip_error(case: Case, profile: Profile, edge: float) -> tuple[float, str]:
+    """Error of the centre pressure because of a profile's tip on the axis, meshed with ``edge`` m;
+    and what it is.
+    """
+    rules, share, tip = case.rules, _on_tip(case, profile), profile.tip
+    if not share:
+        return 0.0, ""
+    said = f"edges of {micrometres(edge)} um on a tip of {micrometres(tip)} um on the axis"
+    edges = edge / tip
+    # a tip that is finer than the mesh misses what a cone's pressure grows by
+    error = rules.tip_error * min(edges, 1.0) ** rules.tip_order + np.log(max(edges, 1.0))
+    return float(share * error), said
 
 
 def unresolved_edge(case: Case, edge: float) -> bool:

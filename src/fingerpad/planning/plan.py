@@ -30,6 +30,7 @@ from fingerpad.planning.discretisation import (
     mesh_size_for,
     preset_for,
     raised_for,
+    tip_error,
     unresolved_edge,
 )
 from fingerpad.planning.effect import Case, Effect, Parts
@@ -40,7 +41,13 @@ from fingerpad.planning.rules import RULES, Preset, Rules
 from fingerpad.planning.schedule import expected_states, schedule
 from fingerpad.planning.stack_estimate import specimen_said
 from fingerpad.planning.surface import Surface, surface_of
-from fingerpad.planning.unbounded import Unbounded, ends_unbounded, in_words, seen_corners
+from fingerpad.planning.unbounded import (
+    Unbounded,
+    ends_unbounded,
+    in_words,
+    seen_corners,
+    unseen_error,
+)
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.measures import apex_edge, skin_ends
@@ -133,7 +140,12 @@ def _planned(
 
     surface = surface_of(case, mesh.edge, partial(worst_contact, case))
     at_edges, edges_said = edges_error(case, mesh.edge_at_edges)
-    mesh_error = surface.error + max(mesh.in_contact, at_edges, mesh.at_receptors)
+    felt = scene.stimulus.at(surface.smoothing, mesh.edge)
+    at_tip, tip_said = tip_error(case, felt, mesh.edge_at_tip)
+    at_corners = _unseen(case, mesh.edge, surface)
+    mesh_error = surface.error + max(
+        mesh.in_contact, at_edges, at_tip, at_corners, mesh.at_receptors
+    )
     left_out = {name: EFFECTS[name].left_out(case) for name in effects}
     without = {name: left_out[name].error for name, effect in effects.items() if not effect.on}
     for name, error in list(without.items()):
@@ -149,6 +161,8 @@ def _planned(
         f"edges of {micrometres(mesh.edge)} um in a contact of "
         f"{micrometres(errors.half_width)} um to either side": mesh.in_contact,
         edges_said: at_edges,
+        tip_said: at_tip,
+        "corners between the points of the profile": at_corners,
         f"elements {mesh.place} that receptors are in": mesh.at_receptors,
         **{EFFECTS[name].instead: error for name, error in without.items()},
         "what the mesh cannot feel of the profile": surface.error,
@@ -171,7 +185,7 @@ def _planned(
         estimated_error=sum(without.values()) + mesh_error,
         predicted_cost_s=_cost(nodes, steps, effects, rules),
         small_strain_error=sum(without.values()),
-        least_error=max(at_edges, mesh.at_receptors),
+        least_error=max(at_edges, at_tip, mesh.at_receptors),
         error_from=max(sources, key=sources.__getitem__),
         asked_error=scene.tolerance,
         once=scene.once,
@@ -195,7 +209,8 @@ def _planned(
 class _Mesh:
     """The mesh of a plan, and what it is expected to be wrong by.
 
-    ``edge``: m, of the skin under the apex; ``edge_at_edges``: m, where the profile has edges.
+    ``edge``: m, of the skin under the apex; ``edge_at_edges``, ``edge_at_tip``: m, where the
+    profile has edges, or a tip on the axis.
     ``in_contact``, ``at_receptors``: relative errors. ``effects``: whose reasons name the mesh.
     ``raised``: why an external mesh was raised to quadratic elements.
     """
@@ -205,6 +220,7 @@ class _Mesh:
     smallest: float
     edge: float
     edge_at_edges: float
+    edge_at_tip: float
     in_contact: float
     place: str
     size: MeshSize | None = None
@@ -247,6 +263,7 @@ def _built(case: Case, preset: Preset, parts: Parts, errors: ContactErrors) -> _
         smallest,
         edge,
         edge_at_edges,
+        finest,
         errors.on_built_mesh(edge, size.skin_edge),
         "among ridges",
         size,
@@ -275,6 +292,7 @@ def _given(case: Case, errors: ContactErrors) -> _Mesh:
         shortest_edge(external),
         edge,
         edge,
+        edge,
         max(found.values()),
         "in the mesh",
         external=external,
@@ -284,6 +302,28 @@ def _given(case: Case, errors: ContactErrors) -> _Mesh:
     )
 
 
+def _corners(case: Case, edge: float, surface: Surface) -> tuple[np.ndarray, float, float, float]:
+    """What :func:`seen_corners` has to know but the width of the contact, on skin with edges of
+    ``edge`` m.
+    """
+    half_width = case.contact.half_width
+    pressure = 2 / np.pi * case.force / half_width
+    if case.scene.axisymmetric:
+        pressure = 1.5 / np.pi * case.force / half_width**2
+    corners = case.scene.stimulus.at(surface.smoothing, edge).corners()
+    return corners, case.pad.stiff, pressure, edge / 2
+
+
+def _unseen(case: Case, edge: float, surface: Surface) -> float:
+    """Error because of the corners between the points of a profile that is turned; in plane strain
+    it is in the factor on measured ones.
+    """
+    if not (case.scene.axisymmetric and case.scene.stimulus.irregular):
+        return 0.0
+    (corners, *known), half_width = _corners(case, edge, surface), case.contact.half_width
+    return unseen_error(corners[np.abs(corners[:, 0]) <= half_width], *known, half_width)
+
+
 def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
     """Where contact is expected at which pressure has no bound."""
     half_width, (low, high) = case.contact.half_width, case.way
@@ -291,12 +331,7 @@ def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
     if unresolved_edge(case, mesh.edge_at_edges):
         corners = profile.tangents()
     else:
-        pressure = 2 / np.pi * case.force / half_width
-        if case.scene.axisymmetric:
-            pressure = 1.5 / np.pi * case.force / half_width**2
-        corners = seen_corners(
-            profile.corners(), case.pad.stiff, pressure, mesh.edge / 2, half_width
-        )
+        corners = seen_corners(*_corners(case, mesh.edge, surface), half_width)
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
     places, friction = list(in_words(profile, corners)), case.scene.friction > 0
     if mesh.external is not None:

@@ -81,7 +81,8 @@ class Plan:
     small_strain_error
         The part of the error that effects left out are to blame for.
     least_error
-        The error is at least this because of the profile's edges or of the elements at receptors.
+        The error is at least this because of the profile's edges, its tip or the elements at
+        receptors.
     error_from
         What most of the error comes from.
     asked_error

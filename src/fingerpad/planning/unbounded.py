@@ -67,11 +67,30 @@ def seen_corners(
     node : m, between nodes of the skin.
     half_width : m, of the contact.
     """
-    x, turn, room = corners.T
+    share, growth = _shares(corners, modulus, pressure, node, half_width)
+    return corners[share * growth > SEEN, 0]
+
+
+def unseen_error(
+    corners: np.ndarray, modulus: float, pressure: float, node: float, half_width: float
+) -> float:
+    """What corners that nodes do not see as such leave in the peak pressure, as a share of it: as
+    much as they bring, and no more than nodes e times as near would find besides. Parameters as of
+    :func:`seen_corners`.
+    """
+    share, growth = _shares(corners, modulus, pressure, node, half_width)
+    unseen = share * growth <= SEEN
+    return float((share * np.clip(growth, 0.0, 1.0))[unseen].max(initial=0.0))
+
+
+def _shares(corners, modulus, pressure, node, half_width):
+    """What corners bring to the pressure (k,), over it and over the logarithm that it grows by, and
+    this at their nodes (k,).
+    """
+    _, turn, room = corners.T
     # mean over the node's own length, linearly weighed, above the mean over the room
     growth = np.log(np.minimum(room, max(half_width, 2 * node)) / node) + 0.5 - np.log(2)
-    share = modulus * turn / (2 * np.pi) * growth / pressure
-    return x[share > SEEN]
+    return modulus * turn / (2 * np.pi) / pressure, growth
 
 
 def ends_unbounded(angle: float, friction: bool) -> bool:

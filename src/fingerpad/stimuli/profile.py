@@ -49,6 +49,9 @@ class Profile:
         1/m, largest curvature with which it bulges at the skin.
     dip
         m, by which it reaches below its point at x = 0.
+    tip, flank
+        Of a body of revolution that comes to a point on its axis: m, radius over which the point is
+        round, and slope of the surface beside it.
     length
         m, of the surface along x from x = 0; a motion must stay on it.
     reach
@@ -75,6 +78,8 @@ class Profile:
     steepness: ClassVar[float] = np.inf
     convexity: ClassVar[float] = 0.0
     dip: ClassVar[float] = 0.0
+    tip: ClassVar[float] = 0.0
+    flank: ClassVar[float] = 0.0
     length: ClassVar[float] = np.inf
     reach: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
     known: ClassVar[tuple[float, float]] = (-np.inf, np.inf)

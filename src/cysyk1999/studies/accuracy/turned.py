@@ -1,9 +1,9 @@
 """What meshes and steps of bodies of revolution are wrong by: the table that the planner reads.
 
-The inferred pad as a dome under spheres, a cone and plates, at forces that make contacts of the
-half widths of :data:`PRESSES`. Errors of meshes are those to a mesh that has at least 32 edges in
-half of the contact; of steps, in a ramp and hold, those to twice the most steps. That of the
-force is of a press to the truth's depth.
+The inferred pad as a dome under spheres, a cone and plates, and one of a stiff skin on soft tissue,
+at forces that make contacts of the half widths of :data:`PRESSES`. Errors of meshes are those to a
+mesh that has at least 32 edges in half of the contact; of steps, in a ramp and hold, those to twice
+the most steps. That of the force is of a press to the truth's depth.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from cysyk1999.studies.accuracy.compare import QUANTITIES, difference, looked_at
 from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, ROWS, STEPS
 from cysyk1999.studies.common.documents import FLAT, force, scene_of
 from fingerpad.healing import simulate
+from fingerpad.planning.discretisation import at_tip
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Scene
@@ -35,16 +36,21 @@ def sphere(radius: float) -> dict[str, str]:
     return {"shape": "sphere", "radius": f"{radius:g} mm"}
 
 
-PRESSES: dict[float, list[tuple[dict[str, Any], float]]] = {
+YOUNG = {"epidermis": "400 kPa", "dermis": "20 kPa", "fat": "20 kPa"}
+STIFF = {"layers": {k: {"youngs_modulus": e, "poisson_ratio": 0.49} for k, e in YOUNG.items()}}
+"""A specimen of a stiff skin on soft tissue."""
+PRESSES: dict[float, list[tuple[Any, ...]]] = {
     0.12e-3: [(sphere(1), 0.03), (FLAT, 0.0033)],
-    0.37e-3: [(sphere(1), 0.8), (sphere(20), 0.13)],
-    1.1e-3: [(CONE, 5.5), (FLAT, 1.15)],
-    2.3e-3: [(sphere(4.8), 16), (FLAT, 5)],
+    0.37e-3: [(sphere(1), 0.8), (sphere(20), 0.13), (sphere(1), 2, STIFF)],
+    1.1e-3: [(CONE, 5.5), (FLAT, 1.15), (sphere(20), 4, STIFF)],
+    2.3e-3: [(sphere(4.8), 16), (FLAT, 5), (sphere(20), 15, STIFF)],
     4e-3: [(FLAT, 20)],
 }
-"""Half width m of the contact -> what makes it: a stimulus and gram-weights."""
+"""Half width m of the contact -> what makes it: a stimulus and gram-weights, and on what."""
 TRUE_ROWS, TRUE_EDGES = 12, 32
 """Rows across the epidermis and edges in half of the contact, at least, of the truth's mesh."""
+TIP_EDGES = 4
+"""In the radius of a tip on the axis, of which the planner knows the error by a rule of its own."""
 ENERGY = "strain_energy_density"
 MEASURED = ("force", *QUANTITIES)
 
@@ -58,25 +64,32 @@ def turned_scene(stimulus: dict[str, Any], motion: list[dict[str, Any]], **more:
 
 def sized(scene: Scene, rows: int, focus: tuple[float, float] | None = None) -> Plan:
     """The plan on a mesh of so many rows across the epidermis, finer to either side (m) in edges
-    (m) of ``focus``.
+    (m) of ``focus``, and at a tip on the axis.
     """
     chosen, scale = plan(scene), DEFAULT_ROWS / rows
     edge = scale * RULES.presets["thesis"].skin_edge
+    layer_edge, tip = scene.specimen.outline.epidermis_thickness / rows, scene.stimulus.tip
     finer = focus is not None and focus[1] < edge
+    over, radial = all_over(*focus) if finer else (), focus[1] if finer else None
+    if tip:
+        over += at_tip(tip, tip / TIP_EDGES)
+        radial = min(tip / TIP_EDGES, radial or layer_edge)
     size = resized(
         chosen,
         skin_edge=edge,
-        layer_edge=scene.specimen.outline.epidermis_thickness / rows,
+        layer_edge=layer_edge,
         growth=min(RULES.presets["thesis"].growth ** scale, 3.0),
-        focus=all_over(*focus) if finer else (),
-        skin_radial_edge=focus[1] if finer else None,
+        focus=over,
+        skin_radial_edge=radial,
     )
     return replace(size, contact_edge=edge)
 
 
-def of_meshes(half_width: float, stimulus: dict[str, Any], grams: float) -> Iterator[dict]:
+def of_meshes(
+    half_width: float, stimulus: dict[str, Any], grams: float, specimen: dict[str, Any]
+) -> Iterator[dict]:
     """Rows of the errors of all meshes in one press."""
-    scene = turned_scene(stimulus, [force(grams)])
+    scene = turned_scene(stimulus, [force(grams)], specimen=specimen)
     focus = 1.3 * half_width, half_width / TRUE_EDGES
     truth = simulate(scene, sized(scene, TRUE_ROWS, focus))
     sunk = scene.varied({"motion": [{"press_to_depth": float(truth.indentation_depth[-1])}]})
@@ -87,9 +100,12 @@ def of_meshes(half_width: float, stimulus: dict[str, Any], grams: float) -> Iter
         yield {"count": rows} | off | _off(found, truth)
 
 
-def of_steps(half_width: float, stimulus: dict[str, Any], grams: float) -> Iterator[dict]:
+def of_steps(
+    half_width: float, stimulus: dict[str, Any], grams: float, specimen: dict[str, Any]
+) -> Iterator[dict]:
     """Rows of the errors of all numbers of steps of a ramp of half a second and a hold."""
-    scene = turned_scene(stimulus, [force(grams, 2 * grams), {"hold": "2 s"}])
+    motion = [force(grams, 2 * grams), {"hold": "2 s"}]
+    scene = turned_scene(stimulus, motion, specimen=specimen)
     chosen = sized(scene, ROWS[1])
 
     def stepped(steps: int) -> xr.Dataset:
@@ -108,14 +124,16 @@ def measured() -> pd.DataFrame:
     """Errors by quantity: a row a press, and mesh or number of steps."""
     rows = []
     for half_width, presses in PRESSES.items():
-        for stimulus, grams in presses:
+        for stimulus, grams, *on in presses:
+            press = half_width, stimulus, grams, on[0] if on else {}
             of = {
                 "half width (mm)": 1e3 * half_width,
                 "shape": stimulus["shape"],
                 "force (gf)": grams,
+                "skin": "stiff" if on else "usual",
             }
-            rows += [{"kind": "mesh"} | of | row for row in of_meshes(half_width, stimulus, grams)]
-            rows += [{"kind": "steps"} | of | row for row in of_steps(half_width, stimulus, grams)]
+            rows += [{"kind": "mesh"} | of | row for row in of_meshes(*press)]
+            rows += [{"kind": "steps"} | of | row for row in of_steps(*press)]
     return pd.DataFrame(rows)
 
 

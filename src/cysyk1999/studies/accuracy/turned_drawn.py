@@ -1,7 +1,7 @@
 """Does a run know its error under any body of revolution? Scenes drawn at random.
 
 The truth is the run's own mesh with edges half as long, at least 24 of them in half of the
-contact.
+contact, and 4 in the radius of a tip on the axis.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ import xarray as xr
 from cysyk1999.publishing.tables import write_frame
 from cysyk1999.studies.accuracy.compare import FINEST, belief, looked_at, resized
 from cysyk1999.studies.accuracy.drawn import sampled
-from cysyk1999.studies.accuracy.turned import MEASURED
+from cysyk1999.studies.accuracy.turned import MEASURED, TIP_EDGES
 from cysyk1999.studies.common.documents import FLAT, scene_of
 from cysyk1999.studies.common.plans import finer
 from fingerpad.healing import simulate
 from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.planning.discretisation import at_tip
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import all_over
@@ -134,11 +135,16 @@ def _poisson(random: np.random.Generator) -> float:
 def truth_of(scene: Scene, last: Plan) -> xr.Dataset:
     """History of the truth of a run that was solved as ``last`` says."""
     made = finer(last, FINER)
-    half_width = last.contact.narrowest or last.contact.half_width
-    edge = min(half_width / TRUE_EDGES, made.mesh_size.skin_radial_edge or np.inf)
+    edge = (last.contact.narrowest or last.contact.half_width) / TRUE_EDGES
     if edge < made.mesh_size.skin_edge:
         focus = (*made.mesh_size.focus, *all_over(1.3 * last.contact.half_width, edge))
-        made = resized(made, focus=focus, skin_radial_edge=edge)
+        radial = min(edge, made.mesh_size.skin_radial_edge or np.inf)
+        made = resized(made, focus=focus, skin_radial_edge=radial)
+    tip = scene.stimulus.tip
+    if 0 < tip < last.contact.half_width:
+        focus = (*made.mesh_size.focus, *at_tip(tip, tip / TIP_EDGES))
+        radial = min(tip / TIP_EDGES, made.mesh_size.skin_radial_edge or np.inf)
+        made = resized(made, focus=focus, skin_radial_edge=radial)
     return simulate(scene, replace(made, once=True))
 
 

@@ -2,7 +2,8 @@
 cost side by side.
 
 Same mesh of linear quads with one pressure an element, same law (neo-Hooke with U = kappa/2 (J -
-1)^2), plane strain, the whole pad, pressed to a depth by a plate or a cylinder without friction.
+1)^2), plane strain and the whole pad, or half of its section turned, pressed to a depth by a plate,
+a cylinder or a sphere without friction.
 Each package is a process of its own with one thread, finds the contact itself, and takes as few
 increments as it converges with; the processes take turns, so that a busy machine slows all. Process
 times are user and system time, of all of the process and of its loop alone. The peers are optional:
@@ -42,8 +43,9 @@ INCREMENTS = (1, 2, 4, 8, 16)
 PRESSES = {
     "plate": ({"shape": "flat"}, 0.8),
     "cylinder 1260 1/m": ({"shape": "cylinder", "curvature": "1260 1/m"}, 0.5),
+    "sphere 200 1/m": ({"shape": "sphere", "curvature": "200 1/m"}, 0.8),
 }
-"""Stimulus and depth (mm)."""
+"""Stimulus and depth (mm); a sphere presses a body of revolution."""
 PATIENCE = 600.0
 """Seconds after which a process is taken to diverge."""
 PEERS = {"felupe": with_felupe, "ngsolve": with_ngsolve}
@@ -80,15 +82,20 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
         "motion": [{"press_to_depth": f"{depth} mm"}],
         "effects": {"finite_strain": "on"},
     }
+    if stimulus["shape"] == "sphere":
+        document["kinematics"] = "axisymmetric"
     base = load_scene(document | {"accuracy": {"skin_edge": edge}})
-    mesh = split(mesh_for(base, plan(base)), "quad4")
+    mesh = mesh_for(base, plan(base))
+    mesh = split(mesh.right_half() if base.axisymmetric else mesh, "quad4")
     write_pad(mesh, folder / "pad.msh")
     elastic = {"layers": "homogeneous", "prony": "none"}
     same = document | {
         "specimen": {"mesh": "pad.msh"} | elastic,
         "accuracy": {"element": "Q1P0", "steps": 1},
-        "effects": {"finite_strain": "on", "symmetry": "off"},
+        "effects": {"finite_strain": "on"},
     }
+    if not base.axisymmetric:
+        same["effects"] = same["effects"] | {"symmetry": "off"}
     own = document | {"specimen": elastic, "accuracy": "thesis"}
     files = folder / "same.yaml", folder / "own.yaml"
     for file, content in zip(files, (same, own), strict=True):
@@ -96,6 +103,7 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
     layer = base.specimen.layers.fat
     known = moduli(layer.youngs_modulus, layer.poisson_ratio, Prony(), "long_term")
     held = np.concatenate([mesh.curves[curve] for curve in ("bone", "nail")])
+    axis = mesh.curves.get("symmetry", np.zeros((0, 2), int))
     np.savez(
         folder / "problem.npz",
         points=mesh.points,
@@ -104,6 +112,9 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
         held=np.unique(held),
         skin_edges=mesh.curves["skin"],
         held_edges=held,
+        axis=np.unique(axis),
+        axis_edges=axis,
+        turned=base.axisymmetric,
         mu=float(known.shear_long_term),
         bulk=float(known.bulk),
         depth=depth * 1e-3,
@@ -132,9 +143,9 @@ def own(scene: Path) -> dict[str, Any] | None:
     if found is None:
         return None
     summary = json.loads((out / "summary.json").read_text())
-    run = summary["run"]
+    run, leg = summary["run"], summary["legs"][-1]
     return found | {
-        "force": summary["legs"][-1]["force_N_per_m"],
+        "force": leg.get("force_N_per_m", leg["force_N"]),
         "iterations": run["newton_iterations"],
         "increments": run["steps"],
         "nodes": run["nodes"],
@@ -187,7 +198,7 @@ def study(
 def _row(runs: list[dict[str, Any]], base: list[dict[str, Any]]) -> dict[str, Any]:
     """Answers and costs of a package's runs beside those of this package in the same turns."""
     force = runs[0]["force"]
-    row = {"nodes": runs[0]["nodes"], "force (N/m)": force}
+    row = {"nodes": runs[0]["nodes"], "force (N/m, of a sphere N)": force}
     row["force off (1)"] = abs(force / base[0]["force"] - 1)
     for part in ("process", "loop"):
         times, own_times = (np.array([run[part] for run in each]) for each in (runs, base))

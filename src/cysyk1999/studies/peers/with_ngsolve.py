@@ -12,8 +12,8 @@ STIFFNESS = 1e11  # Pa/m of the contact: the force is then right to 1e-4
 
 
 def press(problem, increments):
-    """Force (N/m), iterations and process time (s) of the loop; RuntimeError where it does not
-    converge.
+    """Force (N/m, or N), iterations and process time (s) of the loop; RuntimeError where it
+    does not converge.
     """
     import ngsolve as ngs
     from netgen.meshing import Element1D, Element2D, Mesh, MeshPoint, Pnt
@@ -25,19 +25,21 @@ def press(problem, increments):
     pad = plane.AddRegion("pad", dim=2)
     for cell in problem["cells"].tolist():
         plane.Add(Element2D(pad, [number[k] for k in cell]))
-    for name in ("skin", "held"):
+    for name in ("skin", "held", "axis"):
         line = plane.AddRegion(name, dim=1)
         for a, b in problem[f"{name}_edges"].tolist():
             plane.Add(Element1D([number[a], number[b]], index=line))
     mesh = ngs.Mesh(plane)
-    space = ngs.VectorH1(mesh, order=1, dirichlet="held") * ngs.L2(mesh, order=0)
+    held = {"dirichlet": "held", "dirichletx": "held|axis"}
+    space = ngs.VectorH1(mesh, order=1, **held) * ngs.L2(mesh, order=0)
     u, p = space.TrialFunction()
     mu, bulk, down = float(problem["mu"]), float(problem["bulk"]), ngs.Parameter(0.0)
     top, radius = float(problem["points"][:, 1].max()), 1 / float(problem["curvature"] or np.inf)
     f = ngs.Id(2) + ngs.Grad(u)
-    j = ngs.Det(f)
-    solid = (
-        mu / 2 * (j ** (-2 / 3) * (ngs.InnerProduct(f, f) + 1) - 3)
+    across, hoop = (2 * np.pi * ngs.x, 1 + u[0] / ngs.x) if problem["turned"] else (1.0, 1.0)
+    j = ngs.Det(f) * hoop
+    solid = across * (
+        mu / 2 * (j ** (-2 / 3) * (ngs.InnerProduct(f, f) + hoop**2) - 3)
         + p * (j - 1)
         - p**2 / (2 * bulk)
     )
@@ -51,7 +53,7 @@ def press(problem, increments):
     energy = ngs.BilinearForm(space, symmetric=True, condense=True)
     energy += ngs.Variation(solid.Compile() * ngs.dx)
     energy += ngs.Variation(
-        ngs.IfPos(-gap(u), STIFFNESS / 2 * gap(u) ** 2, 0).Compile()
+        (across * ngs.IfPos(-gap(u), STIFFNESS / 2 * gap(u) ** 2, 0)).Compile()
         * ngs.ds("skin", intrules=nodes)
     )
     now, iterations = ngs.GridFunction(space), 0
@@ -69,7 +71,7 @@ def press(problem, increments):
     upright = (
         (top + radius - down - ngs.y - now.components[0][1]) / (found + radius) if radius else 1.0
     )
-    push = ngs.IfPos(-found, -STIFFNESS * found * upright, 0)
+    push = across * ngs.IfPos(-found, -STIFFNESS * found * upright, 0)
     return ngs.Integrate(push * ngs.ds("skin", intrules=nodes), mesh), iterations, loop
 
 

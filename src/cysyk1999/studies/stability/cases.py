@@ -2,7 +2,7 @@
 
 Cases are data: ``config/stability/picked.yaml`` has those picked by hand,
 ``config/stability/combinations.yaml`` those in which every two hard levels of the factors meet
-(:mod:`cysyk1999.studies.stability.combining`).
+(:mod:`cysyk1999.studies.stability.combining`), ``config/stability/turned.yaml`` those of revolution.
 """
 
 from __future__ import annotations
@@ -140,8 +140,10 @@ class Case:
 
     @property
     def neighbour(self) -> Case:
-        """The same motion of a plate or cylinder without friction, on the usual pad."""
+        """The same motion of a plate, cylinder or sphere without friction, on the usual pad."""
         stimulus = FLAT if self.strokes else cylinder(209.97)
+        if "kinematics" in self.scene:
+            stimulus = {"shape": "sphere", "radius": "5 mm"}
         easy = {"specimen": {}, "stimulus": stimulus, "friction": 0.0}
         return replace(self, scene=self.scene | easy, mesh=None)
 
@@ -167,6 +169,8 @@ def _mesh(name: str, scene: Scene) -> PadMesh:
         size = replace(chosen.mesh_size, growth=2.0, coarse_edge=1.8e-3, **finest)
         return build_pad_mesh(scene.specimen.outline, size)
     mesh = mesh_for(scene, chosen)
+    if scene.axisymmetric:
+        mesh = mesh.right_half()
     for change in MESHES[name]:
         mesh = change(mesh)
     return mesh
@@ -209,13 +213,14 @@ def _case(entry: Mapping[str, Any]) -> Case:
     return Case(**{"hard": "; ".join(others)} | dict(entry) | {"limits": limits})
 
 
-def _picked() -> dict[str, Case]:
-    entries = yaml.safe_load((FOLDER / "picked.yaml").read_text(encoding="utf-8"))
+def _picked(file: str) -> dict[str, Case]:
+    entries = yaml.safe_load((FOLDER / file).read_text(encoding="utf-8"))
     return {name: _case({"name": name} | entry) for name, entry in entries.items()}
 
 
-PICKED, COMBINED = _picked(), {entry["name"]: _case(entry) for entry in listed()}
-CATALOGUE: dict[str, Case] = PICKED | COMBINED
+PICKED, COMBINED = _picked("picked.yaml"), {entry["name"]: _case(entry) for entry in listed()}
+TURNED = _picked("turned.yaml")
+CATALOGUE: dict[str, Case] = PICKED | COMBINED | TURNED
 
 
 def unseen(seed: int, count: int = 100) -> dict[str, Case]:

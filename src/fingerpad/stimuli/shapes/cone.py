@@ -30,6 +30,14 @@ class Cone(Shape):
     def convexity(self):
         return 1 / self.radius
 
+    @property
+    def tip(self):
+        return float(self._flank[0][0])
+
+    @property
+    def flank(self):
+        return 1 / np.tan(self.half_angle)
+
     def bend_over(self, half_width):
         return 2 * float(self.outline(np.array([half_width]))[0]) / half_width**2
 

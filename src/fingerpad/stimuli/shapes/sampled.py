@@ -34,7 +34,7 @@ class Sampled(CurvedShape):
     figures/studies/profile_convention.png shows it.
     """
 
-    internal: ClassVar = frozenset({"x", "y", "read_as"})
+    internal: ClassVar = frozenset({"x", "y", "read_as", "axis"})
     follows: ClassVar = {"csv": ("x", "y", "read_as")}
 
     model_config = ConfigDict(json_schema_extra=_needs_its_file)
@@ -56,6 +56,8 @@ class Sampled(CurvedShape):
     y: SkipJsonSchema[tuple[float, ...]]
     read_as: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
     """How the file was read where that had to be guessed, in words."""
+    axis: SkipJsonSchema[bool] = Field(False, exclude=True, repr=False)
+    """Whether it is turned about x = 0."""
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -75,20 +77,20 @@ class Sampled(CurvedShape):
 
     @cached_property
     def curve(self) -> Points:
-        return Points(self.x, self.y, self.ends, self.smooth)
+        return Points(self.x, self.y, self.ends, self.smooth, axis=self.axis)
 
     def turned(self):
         """With the mirror images of its points, which begin on the axis, or are mirrored."""
         x, y = np.array(self.x), np.array(self.y)
         if np.array_equal(x, -x[::-1]) and np.array_equal(y, y[::-1]):
-            return self
+            return self if self.axis else self.model_copy(update={"axis": True})
         if x[0] < 0:
             problem = f"has points beyond the axis of revolution, from x = {x[0] * 1e3:.4g} mm"
             raise Problem(problem, "points from x = 0 on", ("csv",))
         on = slice(1 if x[0] == 0 else 0, None)
         points = {"x": tuple(np.append(-x[::-1], x[on]).tolist())}
         points["y"] = tuple(np.append(y[::-1], y[on]).tolist())
-        return self.model_copy(update=points)
+        return self.model_copy(update=points | {"axis": True})
 
     @property
     def notes(self):
@@ -171,6 +173,9 @@ class Points(Curve):
         "auto", "none" or a cut-off wavelength, m (see :meth:`felt`).
     rounding
         m, radius with which open ends turn away from the skin.
+    axis
+        Whether it is turned about x = 0, between whose samples to either side it is round: points
+        of a scan know no tip.
 
     Raises
     ------
@@ -182,11 +187,13 @@ class Points(Curve):
     #: rad, slope of the sides into which open ends turn
     side = np.radians(80.0)
 
-    def __init__(self, x, y, ends="open", smooth="auto", rounding=0.0):
+    def __init__(self, x, y, ends="open", smooth="auto", rounding=0.0, axis=False):
         self.samples = self.measured = np.asarray(x, float), np.asarray(y, float) - np.min(y)
-        self.ends, self.smooth = ends, smooth
+        self.ends, self.smooth, self.axis = ends, smooth, axis
         x, y = self.samples
         bend = np.zeros(max(len(x) - 1, 0))
+        if axis and len(x) > 3:
+            x, y, bend = self._round_on_axis(x, y)
         if ends != "slope" and len(x) >= 2 and np.all(np.diff(x) > 0):
             right = self._end(x[-2:], y[-2:], rounding)
             left = self._end(-x[1::-1], y[1::-1], rounding)
@@ -225,6 +232,19 @@ class Points(Curve):
             [*bends, 0.0],
         )
 
+    def _round_on_axis(self, x, y):
+        """Mirrored points without that on the axis, and bends between them: an arc where it was, as
+        steep at its ends as the surface beside the axis.
+        """
+        first = int(np.searchsorted(x, 0.0, side="right"))
+        inner = first - 1 if x[first - 1] == 0 else first
+        slope = np.arctan2(y[inner + 1] - y[inner], x[inner + 1] - x[inner])
+        self.tip, self.flank = float(x[first]), abs(float(np.tan(slope)))
+        on = np.arange(len(x)) != (inner if inner < first else -1)
+        bend = np.zeros(on.sum() - 1)
+        bend[len(bend) // 2] = np.sin(slope) / self.tip
+        return x[on], y[on], bend
+
     def corners(self):
         inner = super().corners()
         if self.ends != "open":
@@ -259,8 +279,12 @@ class Points(Curve):
 
     def at(self, smoothing, edge):
         points = smoothed(*self.samples, smoothing) if smoothing else self.samples
-        felt = Points(*points, self.ends, self.smooth, rounding=edge)
+        felt = Points(*points, self.ends, self.smooth, rounding=edge, axis=self.axis)
         felt.smoothing, felt.measured = smoothing, self.samples
+        if felt.tip and smoothing > 4 * felt.tip:  # as the filter left it
+            felt.tip = smoothing / 4
+            rise = np.diff(felt.outline(np.array([felt.tip, 2 * felt.tip])))[0]
+            felt.flank = abs(float(rise / felt.tip))
         return felt
 
     def bulge(self, x: float, half_width: float) -> float:

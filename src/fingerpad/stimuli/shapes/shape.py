@@ -75,6 +75,7 @@ class CurvedShape(Shape):
 for _name in (
     *("evaluate", "outline", "corners", "cutoffs", "felt", "at", "advice", "segments"),
     *("symmetric", "uneven", "irregular", "steepness", "convexity", "dip", "reach", "known"),
+    *("tip", "flank"),
 ):
     setattr(CurvedShape, _name, property(attrgetter(f"curve.{_name}")))
 
