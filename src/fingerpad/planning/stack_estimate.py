@@ -23,6 +23,7 @@ from fingerpad.specimen.judge import meeting_place
 from fingerpad.specimen.pad import REGIONS, SKIN, UNNAMED, PadMesh
 
 _NARROWEST = 1e-4  # half width of a contact, in thicknesses
+_WIDTHS = 60  # of contacts that are tried
 _FLAT = 5.0  # apex radius, in half widths, beyond which a pad is a flat one
 
 
@@ -200,10 +201,15 @@ class StackEstimate(PadEstimate):
         force = half_width**2 * (1 / self.apex_radius + max(curvature, 0.0)) / 2 / less
         return force, force * middle
 
+    def _widest(self, narrowest: float, curvature: float) -> float:
+        """Half width (m) of the widest contact there is."""
+        return self.half_width
+
     def _found(self, wanted: float, which: int, curvature: float) -> ContactEstimate:
         """The contact whose force (``which`` 0) or depth (1) is the ``wanted`` one."""
-        limit, thick = self.half_width, self.soft_thickness
-        narrowest = min(_NARROWEST * thick, 0.1 * limit)
+        thick = self.soft_thickness
+        narrowest = min(_NARROWEST * thick, 0.1 * self.half_width)
+        limit = self._widest(narrowest, curvature)
         bend = 1 / self.apex_radius + max(curvature, 0.0)
 
         def excess(log_half_width):
@@ -246,6 +252,15 @@ class RoundEstimate(StackEstimate):
         k, sinking = self._spectrum
         s = k * half_width
         return float((2 * j1(s) ** 2 / s**2 * k * sinking).sum())
+
+    def _widest(self, narrowest, curvature):
+        """On a layer far thinner than the contact that keeps its volume pressure is not Hertz's:
+        where the force would no longer grow with the contact.
+        """
+        widths = np.geomspace(narrowest, self.half_width, _WIDTHS)
+        forces = np.array([self._curved(width, curvature)[0] for width in widths])
+        falls = np.flatnonzero(~(np.diff(forces) > 0))
+        return float(widths[falls[0]]) if len(falls) else self.half_width
 
     def on_rounding(self, force, flat, radius):
         # pressure grows towards an edge at which F/(2 a) N/m would press a bar
