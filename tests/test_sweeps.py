@@ -20,6 +20,7 @@ from fingerpad import simulate
 from fingerpad.cli import main
 from fingerpad.documents import SceneError, read_yaml
 from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.results import summary
 from fingerpad.scenes.scene import load_scene
 from fingerpad.sweeps import batch, command, engine
 from fingerpad.sweeps.collect import collect_layout
@@ -409,6 +410,21 @@ def run_all(layout):
 
 
 GRID = {CURVATURE: ["100 1/m", "200 1/m", "400 1/m"], FORCE: ["10 gf", "20 gf"]}
+
+
+def test_forces_of_a_body_of_revolution_are_those_of_its_summary(laid):
+    """In newtons, whatever length of contact a pad has in plane strain."""
+    spheres = {
+        "kinematics": "axisymmetric",
+        "stimulus": {"shape": "sphere", "radius": "5 mm"},
+        "motion": [{"press_to_depth": "0.5 mm"}],
+        "accuracy": {"skin_edge": "0.8 mm", "steps": 2},
+    }
+    depths = ["0.3 mm", "0.6 mm"]
+    _, table = run_all(laid({"motion[0].press_to_depth": depths}, design={"scene": spheres}))
+    for depth, gram_weight in zip(depths, table["normal_force_end (gf)"], strict=True):
+        leg = summary(simulate(spheres | {"motion": [{"press_to_depth": depth}]}))["legs"][-1]
+        assert gram_weight * 9.80665e-3 == pytest.approx(leg["force_N"], rel=1e-6)
 
 
 def test_a_grid_becomes_a_labelled_dataset_and_a_table(laid, monkeypatch):

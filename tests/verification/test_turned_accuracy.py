@@ -5,9 +5,10 @@ against runs that are much finer.
 import numpy as np
 import pytest
 
-from cysyk1999.studies.accuracy.compare import BELIEVED, TRUE
-from cysyk1999.studies.accuracy.turned_drawn import CLASSES, beliefs, drawn
-from fingerpad import plan, simulate
+from cysyk1999.studies.accuracy.compare import BELIEVED, TRUE, resized
+from cysyk1999.studies.accuracy.drawn import sampled
+from cysyk1999.studies.accuracy.turned_drawn import CLASSES, beliefs, drawn, truth_of
+from fingerpad import load_scene, plan, simulate
 from fingerpad.reference_solutions import layered_round
 from fingerpad.reference_solutions.layered import Layer
 
@@ -63,6 +64,65 @@ def test_a_drawn_scene_states_an_error_that_covers_its_own(index):
     assert run["class"] == CLASSES[index]
     assert run[TRUE] <= run[BELIEVED]
     assert truth["nodes"] > 2 * run["nodes"] and np.isnan(truth[TRUE])
+
+
+TIP = {
+    "kinematics": "axisymmetric",
+    "stimulus": {"shape": "cone", "half_angle": "85 deg", "radius": "0.2 mm"},
+    "motion": [{"press_to_force": "10 gf"}],
+    "accuracy": {"tolerance": 0.03, "once": True},
+}
+
+
+def check_tip(meshed=True):
+    """Pressure in the middle of a wide contact, under a tip of 17 um: its mesh and its error."""
+    scene = load_scene(TIP)
+    chosen = plan(scene)
+    truth = truth_of(scene, chosen)
+    if not meshed:
+        chosen = resized(chosen, focus=(), skin_radial_edge=None)
+    found = simulate(scene, chosen)
+    off = abs(float(found.centre_pressure[-1] / truth.centre_pressure[-1]) - 1)
+    assert off <= found.attrs["estimated_error"], f"truth: off {off:.3f}"
+    assert off <= 0.03, f"truth: off {off:.3f}"
+
+
+def test_a_tip_on_the_axis_is_meshed_for_its_pressure(must_fail):
+    check_tip()
+    must_fail(check_tip, meshed=False)
+
+
+def test_corners_between_the_points_of_a_profile_are_in_the_stated_error():
+    """And what cannot be met is said."""
+    points = sampled(points=161, curvature=100.0)
+    right = np.array(points.x) >= 0
+    half = sampled(x=np.array(points.x)[right], y=np.array(points.y)[right])
+    plate = TIP | {"stimulus": {"shape": "flat"}, "accuracy": 0.01}
+    history = simulate(load_scene(plate).varied({"stimulus": half}))
+    assert history.attrs["estimated_error"] > 0.01
+    assert history.attrs["tolerance"].startswith("asked 1 %, got ")
+
+
+def test_a_face_that_is_not_pressed_to_its_edges_is_a_plate():
+    light = {"motion": [{"press_to_force": "0.05 gf"}], "accuracy": "thesis"}
+    punch = plan(TIP | light | {"stimulus": {"shape": "punch", "diameter": "7 mm"}})
+    plate = plan(TIP | light | {"stimulus": {"shape": "flat"}})
+    assert punch.mesh_size == plate.mesh_size and not punch.unbounded
+    assert punch.estimated_error == pytest.approx(plate.estimated_error)
+
+
+@pytest.mark.parametrize("poisson", [0.3, 0.4999])
+def test_contacts_on_thin_layers_are_as_wide_as_estimated(poisson):
+    rubber = {"name": "rubber", "thickness": "1.2 mm", "youngs_modulus": "150 kPa"}
+    disc = {"width": "39 mm", "layers": [rubber | {"poisson_ratio": poisson}]}
+    scene = TIP | {
+        "specimen": {"slab": disc, "prony": "none"},
+        "stimulus": {"shape": "sphere", "radius": "8.6 mm"},
+        "motion": [{"press_to_depth": "1 um"}],
+        "accuracy": "draft",
+    }
+    estimated = plan(scene).contact.half_width
+    assert float(simulate(scene).contact_radius[-1]) == pytest.approx(estimated, rel=0.2)
 
 
 def test_a_plan_says_which_errors_it_goes_by():

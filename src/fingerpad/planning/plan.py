@@ -320,8 +320,10 @@ def _unseen(case: Case, edge: float, surface: Surface) -> float:
     """
     if not (case.scene.axisymmetric and case.scene.stimulus.irregular):
         return 0.0
-    (corners, *known), half_width = _corners(case, edge, surface), case.contact.half_width
-    return unseen_error(corners[np.abs(corners[:, 0]) <= half_width], *known, half_width)
+    half_width = case.contact.half_width
+    corners, modulus, pressure, node = _corners(case, edge, surface)
+    touched = corners[np.abs(corners[:, 0]) <= half_width]
+    return unseen_error(touched, modulus, pressure, node, half_width)
 
 
 def _unbounded(case: Case, mesh: _Mesh, surface: Surface) -> Unbounded:
