@@ -26,6 +26,7 @@ from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.stepping import (
     FOLDED,
+    VOLUME_TOLERANCE,
     NewtonSettings,
     NonConvergence,
     QuasiStatic,
@@ -186,7 +187,8 @@ class Simulation:
         soft = float((self.body.bulk / self.body.shear).max()) < MAX_BULK_SINGLE
         settings = NewtonSettings(single=soft and not plan.relaxed.precise)
         if self.kinematics.round:
-            settings = replace(settings, force_tolerance=ROUND_TOLERANCE)
+            usual = VOLUME_TOLERANCE * settings.force_tolerance
+            settings = replace(settings, force_tolerance=ROUND_TOLERANCE, volume_tolerance=usual)
         if plan.newton_tolerance:
             settings = replace(settings, force_tolerance=plan.newton_tolerance)
         self.stepper = QuasiStatic(

@@ -30,7 +30,8 @@ MIN_DET_F = 0.02
 DET_F_SHARE = 0.25
 #: Tolerance of the sum of all forces, relative to the contact force.
 SUM_TOLERANCE = 5e-4
-#: Tolerance of volumes, relative to the pressures, in units of the force tolerance.
+#: Tolerance of volumes, relative to the pressures, in units of the force tolerance, unless settings
+#: have their own.
 VOLUME_TOLERANCE = 10.0
 #: A force below this share of the largest so far is judged by that share.
 LEAST_SCALE = 1e-3
@@ -117,6 +118,8 @@ class NewtonSettings:
     ----------
     force_tolerance : float
         Largest out-of-balance force on the nodes, relative to the contact force.
+    volume_tolerance : float or None
+        Largest wrong pressure, relative to the pressures.
     gap_tolerance : float
         Largest wrong gap, penetration or slip of a sticking point, relative to the node spacing.
     max_iterations : int
@@ -127,6 +130,7 @@ class NewtonSettings:
     """
 
     force_tolerance: float = 1e-4
+    volume_tolerance: float | None = None
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
     single: bool = False
@@ -613,7 +617,7 @@ class QuasiStatic:
             equilibrium / settings.force_tolerance,
             whole / SUM_TOLERANCE,
             balance / settings.force_tolerance,
-            volume / (VOLUME_TOLERANCE * settings.force_tolerance),
+            volume / (settings.volume_tolerance or VOLUME_TOLERANCE * settings.force_tolerance),
             max(opening, penetration, stuck) / (settings.gap_tolerance * self.skin.spacing),
         )
 

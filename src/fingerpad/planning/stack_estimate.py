@@ -216,6 +216,8 @@ class StackEstimate(PadEstimate):
             return self._curved(np.exp(log_half_width), curvature)[which] - wanted
 
         if self._curved(limit, curvature)[which] <= wanted:
+            if limit < self.half_width:  # as wide as what is pressed through the layers
+                limit = float(np.clip(np.sqrt(2 * thick / bend), limit, self.half_width))
             half_width, depth = limit, wanted * self._under_plate(limit)
         elif self._curved(narrowest, curvature)[which] >= wanted:
             half_width, depth = narrowest, self._curved(narrowest, curvature)[1]
