@@ -12,7 +12,7 @@ import yaml
 from test_hard_cases import fails_cleanly
 from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
-from cysyk1999.studies.stability.cases import CATALOGUE, COMBINED, PICKED, Limits
+from cysyk1999.studies.stability.cases import CATALOGUE, COMBINED, PICKED, TURNED, Limits
 from cysyk1999.studies.stability.run import (
     ADMITS,
     CLEAN,
@@ -55,6 +55,25 @@ def check(found):
 
 
 MAY_FAIL = [name for name, case in PICKED.items() if case.may_fail]
+HARDER = [
+    f"turned, {name}"
+    for name in (
+        "sphere, radius 0.2 mm",
+        "sphere, radius 0.1 mm",
+        "sphere, radius 0.2 mm, held",
+        "needle, 30 deg, tip 0.1 mm, 2 gf",
+        "needle, 20 deg, tip 0.05 mm, 1 gf",
+        "needle, 45 deg, tip 0.05 mm, 1 mm",
+        "needle, 15 deg, tip 0.02 mm, 0.5 mm",
+        "punch 6.35 mm, fillet 0.03 mm, 50 gf",
+        "punch 1 mm, fillet 0.02 mm, 10 gf",
+        "punch 0.5 mm, fillet 0.01 mm, 0.5 mm",
+        "film of 10 um, 1000 times as stiff, sphere",
+        "friction 1, punch",
+        "heavy plate",
+    )
+]
+"""Cases of revolution that labour, or stop: tips several radii deep, and a plate on the bone."""
 STABLE_CASES = [name for name in PICKED if name not in MAY_FAIL]
 
 
@@ -63,6 +82,17 @@ def test_hard_case_is_stable(name):
     found = done(name)
     assert "balance" in found.measured
     check(found)
+
+
+@pytest.mark.parametrize("name", [name for name in TURNED if name not in HARDER])
+def test_hard_case_of_revolution_is_stable(name):
+    check(done(name))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HARDER)
+def test_harder_case_of_revolution_is_right_or_fails_cleanly(name):
+    assert done(name).outcome in (LABOURS, CLEAN)
 
 
 @pytest.mark.slow
