@@ -69,6 +69,7 @@ HARDER = [
         "punch 1 mm, fillet 0.02 mm, 10 gf",
         "punch 0.5 mm, fillet 0.01 mm, 0.5 mm",
         "film of 10 um, 1000 times as stiff, sphere",
+        "disc of 0.5 mm, nu 0.4999, sphere",
         "friction 1, punch",
         "heavy plate",
     )
