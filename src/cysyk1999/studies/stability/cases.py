@@ -2,7 +2,8 @@
 
 Cases are data: ``config/stability/picked.yaml`` has those picked by hand,
 ``config/stability/combinations.yaml`` those in which every two hard levels of the factors meet
-(:mod:`cysyk1999.studies.stability.combining`), ``config/stability/turned.yaml`` those of revolution.
+(:mod:`cysyk1999.studies.stability.combining`), ``config/stability/turned.yaml`` those of
+revolution.
 """
 
 from __future__ import annotations
