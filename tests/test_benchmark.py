@@ -175,11 +175,16 @@ def test_a_table_comes_back_as_it_was_written(tmp_path):
         ("force_plate,99,2", ("'row'", "99")),
         ("force_plate,1,x", ("row 2", "'predicted'", "x")),
         ("force_plate,1,2\nforce_plate,1,2", ("row 3", "twice")),
+        ("force_plate,1,2,mN", ("row 2", "'unit'", "mN", "allowed: N")),
+        ("force_plate,1,2,,train", ("'role'", "train")),
+        ("force_plate,1,2,,,,-0.1", ("'mesh_error'", "-0.1")),
     ],
 )
 def test_a_wrong_prediction_is_refused_in_one_line(tmp_path, text, told):
     path = tmp_path / "mine.csv"
-    path.write_text(f"dataset,row,predicted\n{text}\n")
+    header = "dataset,row,predicted,unit,role,value,mesh_error"
+    lines = [line + "," * (6 - line.count(",")) for line in text.splitlines()]
+    path.write_text("\n".join([header, *lines]) + "\n")
     with pytest.raises(BenchmarkError) as refused:
         read_predictions(path)
     assert all(each in str(refused.value) for each in (*told, "mine.csv"))
@@ -189,3 +194,11 @@ def test_a_wrong_prediction_is_refused_in_one_line(tmp_path, text, told):
 def test_an_unknown_dataset_is_refused():
     with pytest.raises(BenchmarkError, match="force_plate"):
         datasets(["force_plates"])
+
+
+def test_too_few_rows_have_no_verdict():
+    measured = datasets(["force_plate"])
+    held_out = [row for row in measured["force_plate"] if row.role == "test"]
+    for count, said in ((5, "Too few rows to judge"), (6, "To be trusted here")):
+        same = {("force_plate", row.row): Prediction(row.value) for row in held_out[:count]}
+        assert score(same, measured)[0].verdict.startswith(said)

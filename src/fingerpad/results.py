@@ -409,8 +409,8 @@ def _run(history: xr.Dataset) -> dict[str, Any]:
     out |= {name: value for name, value in discretisation if name.startswith("profile_")}
     if notes:
         at_end = any("reached the end" in note for note in notes)
-        out |= {"contact_reached_profile_end": at_end, "notes": notes}
-    return out
+        out["contact_reached_profile_end"] = at_end
+    return out | {"notes": notes}
 
 
 def _responses(history: xr.Dataset, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:

@@ -60,6 +60,11 @@ def benchmark(options: argparse.Namespace) -> None:
         name: score({key: found[key] for key in found if key[0] in measured}, measured)
         for name, found in models.items()
     }
+    if not any(scores.values()):
+        raise BenchmarkError(
+            f"{words[1] if words else 'the datasets'}: no row with the role test is predicted; "
+            "allowed: one or more"
+        )
     show(scores)
     if options.out:
         write(options.out, models, scores, measured)

@@ -16,6 +16,10 @@ from fingerpad.tables import TableError
 
 COLUMNS = ("dataset", "row", "predicted")
 """That a table of predictions has; ``mesh_error`` may be there, others are not looked at."""
+FIXED = ("unit", "role", "value")
+"""Columns that a table may have, as the template has, and not change."""
+FEWEST = 3
+"""Predicted rows, and half of those held out, below which there is no verdict."""
 
 COARSE = 0.2
 """Error of a mesh that a verdict names."""
@@ -88,7 +92,8 @@ def read_predictions(path: str | Path) -> Predictions:
     table = table_of(path, COLUMNS)
     name, number, value = (table.header.index(column) for column in COLUMNS)
     error = table.header.index("mesh_error") if "mesh_error" in table.header else None
-    known = {dataset: {row.row for row in rows} for dataset, rows in datasets().items()}
+    fixed = [(table.header.index(key), key) for key in FIXED if key in table.header]
+    known = {dataset: {row.row: row for row in rows} for dataset, rows in datasets().items()}
     found: Predictions = {}
     for cells, line in zip(table.rows, table.lines, strict=True):
         place = f"{path}: row {line}, column"
@@ -96,16 +101,24 @@ def read_predictions(path: str | Path) -> Predictions:
             allowed = ", ".join(known)
             raise BenchmarkError(f"{place} 'dataset': no '{cells[name]}'; allowed: {allowed}")
         if not cells[number].isdigit() or int(cells[number]) not in known[cells[name]]:
-            allowed = f"a row of {cells[name]}"
+            allowed = f"1 to {max(known[cells[name]])}, the rows of {cells[name]}"
             raise BenchmarkError(f"{place} 'row': no '{cells[number]}'; allowed: {allowed}")
         key = cells[name], int(cells[number])
         if key in found:
             raise BenchmarkError(f"{place} 'row': {key[1]} is there twice; allowed: once")
+        for column, text in fixed:
+            stated = str(getattr(known[key[0]][key[1]], text))
+            if cells[column] not in ("", stated):
+                wrong = f"'{cells[column]}' is not the measurement's"
+                raise BenchmarkError(f"{place} '{text}': {wrong}; allowed: {stated}")
         try:
             if cells[value]:
                 predicted, stated = table.number(cells[value], line, value), math.nan
                 if error is not None and cells[error]:
                     stated = table.number(cells[error], line, error)
+                    if stated < 0:
+                        wrong = f"'{cells[error]}' is below zero; allowed: a share of 0 or more"
+                        raise BenchmarkError(f"{place} 'mesh_error': {wrong}")
                 found[key] = Prediction(predicted, stated)
         except TableError as wrong:
             raise BenchmarkError(f"{path}: {wrong}") from wrong
@@ -189,6 +202,8 @@ def _verdict(squared: float, near: float, predicted: int, total: int, mesh: floa
     part = "" if predicted == total else f" ({predicted} of {total} rows predicted)"
     if mesh > COARSE:
         part += f", and a coarser mesh changes it by up to {100 * mesh:.0f} %"
+    if predicted < max(FEWEST, total / 2):
+        return f"Too few rows to judge{part}."
     if squared >= 0.8 and near >= 0.9:
         return f"To be trusted here{part}."
     if squared >= 0.5:

@@ -28,7 +28,7 @@ def _show(emulator: Emulator, out: Path) -> None:
     for head in ("quantity", "median error", "95 % within", "within the band"):
         table.add_column(head, justify="left" if head == "quantity" else "right")
     for row in held_out:
-        shares = (f"{100 * row[k]:.2g} %" for k in ("median", "within_95", "covered"))
+        shares = (f"{100 * row[k]:.3g} %" for k in ("median", "within_95", "covered"))
         table.add_row(row["quantity"].replace("_", " "), *shares)
     console.print(table)
     left_out = emulator.about["scenes_left_out"]
