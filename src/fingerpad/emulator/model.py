@@ -93,13 +93,22 @@ class Group:
     band: np.ndarray
 
     def folded(self, weights: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Mean and coefficients of the quantity at weighted moments: (m,), (terms, m)."""
+        """Mean and components of the quantity at weighted moments: (m,), (parts, m)."""
         mean, rows = self.mean, self.rows
         if weights is not None:
             mean = np.tensordot(weights, mean.reshape(self.shape), 1).ravel()
             rows = self.rows.reshape(-1, *self.shape)
             rows = np.einsum("km,pm...->pk...", weights, rows).reshape(len(self.rows), -1)
-        return mean, self.coefficients @ rows
+        return mean, rows
+
+    def at(self, terms: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """What components (parts, m) add to the mean at polynomials (n, terms): (n, m); the
+        products are taken in the order that is less work.
+        """
+        (n, many), (parts, m) = terms.shape, rows.shape
+        if n * parts * (many + m) < many * m * (parts + n):
+            return (terms @ self.coefficients) @ rows
+        return terms @ (self.coefficients @ rows)
 
 
 @dataclass(frozen=True)
@@ -175,7 +184,8 @@ class Emulator:
         """
         names = self.quantities if names is None else names
         if ENERGY in names:
-            pieces = tuple(self.pieces)
+            layers = self.layers(points)
+            pieces = tuple(n for n, (d, layer) in self.pieces.items() if layer in layers[:, d])
             others = tuple(name for name in names if name != ENERGY)
             found = self.values(points, (*others, *pieces), weights)
             return self._joined(points, {name: found[name] for name in pieces}) | {
@@ -188,8 +198,8 @@ class Emulator:
         parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
         for start in range(0, len(points), _CHUNK):
             terms = self.terms(points[start : start + _CHUNK])
-            for name, (mean, slopes) in folded.items():
-                value = mean + terms @ slopes
+            for name, (mean, rows) in folded.items():
+                value = mean + self.groups[name].at(terms, rows)
                 parts[name].append(np.exp(value) if name in LOGARITHMIC else value)
         shapes = {n: (-1, *self.groups[n].shape) for n in names}
         if weights is not None:
@@ -229,7 +239,7 @@ class Emulator:
         """
         depths, which = np.unique(self.grids["receptor_depth"], return_inverse=True)
         layers = self.layers(points)
-        some = next(iter(parts.values()))
+        some = next(iter(parts.values()), np.empty((0, len(self.moments), 0)))
         found = np.full((len(points), *some.shape[1:-1], len(which)), np.nan)
         for name, value in parts.items():
             depth, layer = self.pieces[name]
