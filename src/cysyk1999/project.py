@@ -254,10 +254,15 @@ class Project:
         return f"{self.config.figures}/fig_{number}.png"
 
     def full_history(self, scene: str) -> str:
-        """History of a scene: with whole fields, if the configuration wants them of it."""
-        if scene in self.config.field_scenes:
+        """History of a scene: with whole fields, if a picture needs them of it."""
+        if scene in self.with_fields:
             return self.result(f"fields/{scene}/history.nc")
         return self.histories([scene])[0]
+
+    @property
+    def with_fields(self) -> list[str]:
+        """Scenes that are simulated with whole fields."""
+        return [*dict.fromkeys([*self.config.field_scenes, *self.config.animations])]
 
     @property
     def measured(self) -> list[str]:

@@ -115,7 +115,7 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_tables_and_his
         "results/thesis/specimens",
         "results/thesis/pdf/fig_4-10.pdf",
     } <= outputs
-    assert thesis.scenes(names, "fields") == set(config.field_scenes)
+    assert thesis.scenes(names, "fields") == {*config.field_scenes, *config.animations}
     assert thesis.scenes(names) == set(config.every_scene)
     coarse = thesis.scenes(names, "coarse")
     compared = {scene for figure in thesis.project.drawn for scene in figure.read_companions}

@@ -8,16 +8,19 @@ judged; beside the clamp of the nail, whose ends are singular, the pad is grey.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.tri import Triangulation
 from PIL import Image
 from xarray import Dataset
 
@@ -36,6 +39,7 @@ from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.results import read_history, scene_of
 from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.pad import PadMesh
 
 SIZE, DPI = (5.4, 5.7), 85  # inch, dots an inch
 FRAME_TIME = 100  # ms
@@ -104,16 +108,23 @@ def drawn(history: Dataset) -> list[np.ndarray]:
     grid = fig.add_gridspec(3, 2, height_ratios=[3.2, 1.0, 1.0])
     section, below = fig.add_subplot(grid[0, :]), fig.add_subplot(grid[1:, 0])
     felt, answer = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[2, 1])
-    values = np.where(y > CLAMPED, values, np.nan)
-    cold = colormaps[style.FIELD].with_extremes(bad="0.82")
     # neither edges nor smoothed sides: both draw the mesh
-    body = PolyCollection([], cmap=cold, norm=norm, edgecolor="none", antialiased=False)
+    body = PolyCollection([], color="0.82", edgecolor="none", antialiased=False)
+    window = Rectangle((-HALF_WIDTH, CLAMPED), 2 * HALF_WIDTH, HIGH, transform=section.transData)
+    parts, painted = list(_layers(mesh, cells)), []
     lines = LineCollection([], colors=style.INK, lw=0.7)
     section.add_collection(body)
     section.add_collection(lines)
     section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal")
     section.set(xlabel="x (mm)", ylabel="y (mm)")
-    fig.colorbar(body, ax=section, label=label, shrink=0.8, pad=0.01, extend="both")
+    fig.colorbar(
+        ScalarMappable(norm, style.FIELD),
+        ax=section,
+        label=label,
+        shrink=0.8,
+        pad=0.01,
+        extend="both",
+    )
     across = np.linspace(-HALF_WIDTH, HALF_WIDTH, 721)
     reach = 0.575e3 * history["contact_width"].values.max() + 1.5 * stroke
     highest = 1.05e-3 * history[PRESSURE].values[at].max()
@@ -143,7 +154,15 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         shown = np.isfinite(surface) & (surface < HIGH + 1)
         block.set_data(across[shown], surface[shown], HIGH + 1)
         body.set_verts(points[k][cells])
-        body.set_array(values[k])
+        while painted:
+            painted.pop().remove()
+        for rows, nodes, triangles, node in parts:
+            mean = _at_nodes(values[k][rows], node)
+            look = {"shading": "gouraud", "cmap": style.FIELD, "norm": norm}
+            painted.append(
+                section.tripcolor(Triangulation(*points[k][nodes].T, triangles), mean, **look)
+            )
+            painted[-1].set_clip_path(window)
         lines.set_segments([points[k][line] for line in borders])
         receptor.set_data(*points[k][beside][:, None])
         place, pressure = profile(history, index)
@@ -156,6 +175,24 @@ def drawn(history: Dataset) -> list[np.ndarray]:
         fig.set_layout_engine("none")  # laid out once: nothing moves between frames
         frames.append(np.array(canvas.buffer_rgba())[..., :3])
     return frames
+
+
+def _layers(mesh: PadMesh, cells: np.ndarray) -> Iterator[tuple[np.ndarray, ...]]:
+    """Of each layer: its elements, its corner nodes, its triangles (m, 3) and the corners of its
+    elements, both as places among the nodes.
+    """
+    for region in np.unique(mesh.region):
+        rows = np.flatnonzero(mesh.region == region)
+        nodes, node = np.unique(cells[rows], return_inverse=True)
+        node = node.reshape(len(rows), -1)
+        last = node.shape[1] - 1
+        yield rows, nodes, np.concatenate([node[:, [0, k, k + 1]] for k in range(1, last)]), node
+
+
+def _at_nodes(values: np.ndarray, node: np.ndarray) -> np.ndarray:
+    """Values of a layer's elements at its nodes: the mean of those that meet there."""
+    each = np.repeat(values, node.shape[1])
+    return np.bincount(node.ravel(), each) / np.bincount(node.ravel())
 
 
 def _heading(history: Dataset) -> str:

@@ -116,7 +116,7 @@ def moving_pictures(project: Project) -> Iterator[Job]:
 def fields(project: Project) -> Iterator[Job]:
     """Histories with whole fields; presses in one process, strokes in another."""
     for name, strokes in (("fields_of_presses", False), ("fields_of_strokes", True)):
-        wanted = project.config.field_scenes
+        wanted = project.with_fields
         if scenes := [s for s in wanted if moves_along(project.scene(s)) == strokes]:
             values = {
                 "scenes": [project.scene(scene) for scene in scenes],
