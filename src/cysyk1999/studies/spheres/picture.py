@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 from matplotlib.tri import Triangulation
 
 from cysyk1999.figures.findings import n, span
@@ -69,11 +70,13 @@ def forces(frame: pd.DataFrame) -> Figure:
         "Lines: simulated, bodies of revolution pressed slowly; bands: 95 % confidence of the "
         "factor. Points: measured (Dandekar, Raju and Srinivasan 2003; digitised by a third "
         "party). The point's tip, a cone of 30° with a radius of 0.5 mm, is assumed. Dotted: 1 N, "
-        "above which a cap has not the shape of a pad. d: simulated; grey: area ∝ force²ᐟ³, as a "
-        "ball under a plate has it at small loads (Hertz)."
+        "above which a cap has not the shape of a pad. d, e: simulated; grey: ∝ force²ᐟ³, as area "
+        "and depth of a ball under a plate are at small loads (Hertz), and as depth was found of "
+        "fingertips (koreascience JAKO200111919995062)."
     )
-    fig = study_figure(title, [note], 2.9)
-    axes = fig.subplots(1, 4)
+    fig = study_figure(title, [note], 3.1)
+    grid = fig.add_gridspec(2, 4)
+    axes = [fig.add_subplot(grid[:, k]) for k in range(3)]
     looks = ordered("subject", sorted(frame["series"].unique()))
     for ax, (probe, done) in zip(axes[:3], PROBES.items(), strict=True):
         for who, look in looks.items():
@@ -92,21 +95,28 @@ def forces(frame: pd.DataFrame) -> Figure:
         for who, look in looks.items()
     ]
     axes[0].legend(handles=entries, loc="upper left", handlelength=1.0)
-    _areas(axes[3], frame, looks)
+    area, approach = fig.add_subplot(grid[0, 3]), fig.add_subplot(grid[1, 3])
+    _over_force(area, frame, looks, AREA)
+    _over_force(approach, frame, looks, DEPTH)
+    area.set(ylabel="area (mm²)", title="contact under the plate")
+    approach.set(xlabel=FORCE, ylabel="depth (mm)", title="approach of the plate")
     return fig
 
 
-def _areas(ax: Axes, frame: pd.DataFrame, looks) -> None:
-    """Contact area over force under the plate, on logarithmic axes."""
+def _over_force(ax: Axes, frame: pd.DataFrame, looks, quantity: str) -> None:
+    """A quantity over force under the plate, on logarithmic axes, beside force^(2/3)."""
     rows = frame[(frame["panel"] == "plate") & is_simulated(frame) & (frame[AREA] > 0)]
     for who, look in looks.items():
         own = rows[rows["series"] == who]
-        ax.loglog(own[FORCE], own[AREA], color=look["color"], ls=look["ls"])
+        ax.loglog(own[FORCE], own[quantity], color=look["color"], ls=look["ls"])
     force = np.array([rows[FORCE].min(), rows[FORCE].max()])
     first = rows.loc[rows[FORCE].idxmin()]
-    law = first[AREA] * (force / first[FORCE]) ** (2 / 3)
+    law = first[quantity] * (force / first[FORCE]) ** (2 / 3)
     ax.loglog(force, law, color=GREY, lw=0.8, ls="--")
-    ax.set(xlabel=FORCE, ylabel="contact area (mm²)", title="contact under the plate")
+    for axis, steps in ((ax.xaxis, (1,)), (ax.yaxis, (1, 3))):
+        axis.set_major_locator(LogLocator(10, steps))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_locator(NullLocator())
 
 
 # -- one sphere, from the skin to impulses ---------------------------------------------------------
