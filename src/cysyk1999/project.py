@@ -93,7 +93,7 @@ class Project:
                 shown = f"shows scenes that the configuration has not: {', '.join(lacking)}"
                 allowed = "figures of its scenes, or leave figure_numbers out"
                 self._wrong(key, f"{number!r} {shown}", allowed)
-        known = (*TABLES, *RECEPTOR_TABLES, "mesh_quality", "summary")
+        known = (*TABLES, *RECEPTOR_TABLES, "benchmark", "mesh_quality", "summary")
         for i, name in enumerate(c.table_names):
             if name not in known:
                 self._wrong(("table_names", i), f"{name!r} is not a table", ", ".join(known))

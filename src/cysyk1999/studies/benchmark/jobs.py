@@ -14,6 +14,8 @@ from fingerpad.benchmark.rows import MEASURED
 @part("benchmark", in_default=True)
 def benchmark(project: Project) -> Iterator[Job]:
     """Published measurements against predictions: this model, a half-space, other models."""
+    if "benchmark" not in project.config.table_names:
+        return
     measured = sorted(map(str, MEASURED.glob("*.csv")))
     folder = project.result("benchmark")
     tables = [f"{folder}/{name}.csv" for name in ("fingerpad", "half-space", "touchsim", "scores")]
