@@ -7,10 +7,11 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from sklearn.gaussian_process.kernels import Matern
 
 import fingerpad
 from fingerpad.cli import main
-from fingerpad.emulator.basis import basis, cubic_weights, exponents
+from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel
 from fingerpad.emulator.model import load_emulator
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.engine import lay_out
@@ -148,6 +149,12 @@ def test_cubics_in_time_are_of_fourth_order():
     assert np.log2(errors[0] / errors[1]) > 3.6 and np.log2(errors[1] / errors[2]) > 3.6
 
 
+def test_the_covariance_is_that_of_scikit_learn():
+    rng, scales = np.random.default_rng(2), np.array([0.1, 1.0, 9.0])
+    x, y = rng.uniform(-1, 1, (2, 30, 3))
+    assert kernel(x, y, scales) == pytest.approx(Matern(scales, nu=2.5)(x, y), abs=1e-13)
+
+
 # --- answers --------------------------------------------------------------------------------------
 
 
@@ -186,6 +193,35 @@ def test_the_band_holds_what_it_says_of_unseen_scenes(tmp_path):
         held.append(abs(found.contact_width - 2 * half) <= found.contact_width_error)
     assert np.mean(held) > 0.85
     assert float(found.contact_width_error) < 0.2 * float(found.contact_width)
+
+
+def test_the_low_end_of_an_even_range_is_emulated_as_well(tmp_path):
+    """On a logarithm of curvatures no scene would be near the flattest."""
+    wide = OVER | {"stimulus.curvature": {"range": ["0.01 1/m", "1300 1/m"]}}
+    pad = fingerpad.emulate(made_up(tmp_path / "wide", 64, over=wide))
+    for curvature in (0.01, 1300.0):
+        found = pad.predict(scene(curvature)).isel(time=-1)
+        depth, half, _ = truth(curvature, 20 * GF, 40 * GF, 1.5)
+        assert float(found.indentation_depth) == pytest.approx(depth, rel=0.01)
+        assert float(found.contact_width) == pytest.approx(2 * half, rel=0.02)
+
+
+def test_another_sweep_judges_it(pad, tmp_path):
+    """By the made-up pad twice as deep, all depths are off by half."""
+    unseen = made_up(tmp_path / "unseen", 20, seed=4)
+    few = made_up(tmp_path / "few", 48)
+    rows = {row["quantity"]: row for row in fingerpad.emulate(few, unseen).about["held_out"]}
+    assert rows["contact_width"]["scenes"] == 20 and rows["contact_width"]["within_95"] < 0.05
+    for file in (unseen / "histories").iterdir():
+        with xr.load_dataset(file) as found:
+            found["indentation_depth"] *= 2
+        found.to_netcdf(file)
+    rows = {row["quantity"]: row for row in fingerpad.emulate(few, unseen).about["held_out"]}
+    assert rows["indentation_depth"]["median"] == pytest.approx(0.5, abs=0.01)
+    assert rows["indentation_depth"]["covered"] == 0
+    other = made_up(tmp_path / "other", 8, over={k: OVER[k] for k in list(OVER)[:2]})
+    with pytest.raises(fingerpad.SceneError, match="other: is over .*; allowed: .*rate"):
+        fingerpad.emulate(few, other)
 
 
 def test_a_moving_edge_does_not_smear(pad):
@@ -272,10 +308,11 @@ def test_energies_jump_where_layers_meet(tmp_path):
 
     thin, wrong = energies(0.59)
     thick, still = energies(0.61)
+    assert energies(0.6)[0][0] == pytest.approx(thin[0], rel=0.03)  # on the border: the layer below
     assert thin[0] / thick[0] == pytest.approx(10, rel=0.03)
     assert wrong == pytest.approx(1, abs=0.02) and still == pytest.approx(1, abs=0.02)
     rows = {row["quantity"]: row for row in pad.about["held_out"]}
-    assert rows["strain_energy_density"]["median"] < 0.01
+    assert rows["strain_energy_600_um"]["median"] < 0.01
 
 
 def test_a_file_gives_the_same_answers(pad, tmp_path):
@@ -284,7 +321,7 @@ def test_a_file_gives_the_same_answers(pad, tmp_path):
     xr.testing.assert_identical(again.predict(scene()), pad.predict(scene()))
     assert "code_sha256" in again.about["provenance"]
     with np.load(tmp_path / "pad.emulator", allow_pickle=False) as found:
-        assert json.loads(str(found["about"]))["format"] == 2
+        assert json.loads(str(found["about"]))["format"] == 3
 
 
 def test_the_commands_write_and_refuse(folder, tmp_path, capsys):

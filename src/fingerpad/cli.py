@@ -226,6 +226,8 @@ def _parser() -> argparse.ArgumentParser:
     sweep("--profile", metavar="DIR", help=cluster)
     sweep("--again", **is_set, help="also try scenes again that could not be simulated before")
     emulate("folder", metavar="SWEEP_DIR", type=Path, help="the folder of the sweep")
+    judges = "the folder of another sweep over the same keys: how far off the emulator is for it"
+    emulate("--unseen", metavar="SWEEP_DIR", type=Path, help=judges)
     explore("emulator", metavar="FILE", type=Path, help="the file of the emulator")
     file: dict[str, Any] = {"metavar": "FILE", "type": Path, "required": True}
     emulate("--out", **file, help="the file of the emulator, such as pad.emulator")
@@ -324,7 +326,7 @@ def _benchmark(options: argparse.Namespace) -> int:
 
 def _emulate(options: argparse.Namespace) -> None:
     _check_writable(options.out, directory=False)
-    emulators.emulate_folder(options.folder, options.out, options.quiet)
+    emulators.emulate_folder(options.folder, options.out, options.unseen, options.quiet)
 
 
 def _explore(options: argparse.Namespace) -> None:

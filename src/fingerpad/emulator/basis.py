@@ -1,5 +1,5 @@
-"""The mathematics of an answer, which a page repeats in a few lines: Legendre polynomials of the
-knobs, and cubics in time.
+"""The mathematics of an answer, which a page repeats in a few lines: a Gaussian process in the
+knobs about a parabola of them, and cubics in time.
 """
 
 from __future__ import annotations
@@ -7,12 +7,30 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
+from numba import njit
 from numpy.polynomial import legendre
 
-WARPS = {"linear": np.array, "square root": np.sqrt, "logarithm": np.log}
-"""What a polynomial sees of a knob's values."""
+from fingerpad.compiled import JIT
+
+BENT = 10.0
+"""How steep the bent scale is at the low end, over its steepness at the high end, less 1."""
 SOONEST = 0.05
 """s; holds are interpolated in log(1 + time / SOONEST)."""
+
+
+def _bent(value, low, high):
+    share = (value - low) / (high - low)
+    return np.log1p(BENT * np.maximum(share, 0)) + BENT * np.minimum(share, 0)
+
+
+WARPS = {
+    "linear": lambda value, low, high: value,
+    "logarithm": lambda value, low, high: np.log(value),
+    "bent": _bent,
+}
+"""What an emulator sees of a knob's values, in a box from low to high. ``bent`` is even at the low
+end and logarithmic beyond a tenth of the box.
+"""
 
 
 def exponents(knobs: int, degree: int) -> np.ndarray:
@@ -38,6 +56,40 @@ def basis(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
     found = np.ones((len(points), len(powers)))
     for column, degrees in zip(points.T, powers.T, strict=True):
         found *= legendre.legvander(column, int(degrees.max(initial=0)))[:, degrees]
+    return found
+
+
+@njit(**JIT, fastmath=True, nogil=True)
+def kernel(points, centres, scales):
+    """Matern's covariance (n, m) of smoothness 5/2 (Rasmussen and Williams 2006, eq 4.17).
+
+    Parameters
+    ----------
+    points
+        (n, knobs), from -1 to 1.
+    centres
+        (m, knobs), likewise.
+    scales
+        (knobs,) lengths over which it falls.
+    """
+    n, many, knobs = len(points), len(centres), len(scales)
+    found, square = np.empty((n, many)), np.empty(many)
+    across = np.ascontiguousarray(centres.T)
+    for i in range(n):
+        square[:] = 0.0
+        for a in range(knobs):
+            for j in range(many):
+                step = (points[i, a] - across[a, j]) / scales[a]
+                square[j] += 5 * step * step
+        for j in range(many):
+            far = np.sqrt(square[j])
+            # exp(-far) as the 64th power of a series, which compilers do for several at once
+            t, falls = -min(far, 38.0) / 64, 1.0
+            for k in range(12, 0, -1):
+                falls = 1.0 + falls * t / k
+            for _ in range(6):
+                falls *= falls
+            found[i, j] = (1 + far + square[j] / 3) * falls
     return found
 
 

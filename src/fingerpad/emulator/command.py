@@ -13,9 +13,9 @@ from fingerpad.emulator.model import Emulator, load_emulator
 from fingerpad.files import write_text
 
 
-def emulate_folder(folder: Path, out: Path, quiet: bool) -> None:
+def emulate_folder(folder: Path, out: Path, unseen: Path | None, quiet: bool) -> None:
     """Fit an emulator, write it, and show how far off it is. Raises SceneError."""
-    emulator = emulate(folder)
+    emulator = emulate(folder, unseen)
     emulator.save(out)
     if not quiet:
         _show(emulator, out)
@@ -24,7 +24,8 @@ def emulate_folder(folder: Path, out: Path, quiet: bool) -> None:
 def _show(emulator: Emulator, out: Path) -> None:
     console = Console(highlight=False)
     held_out = emulator.about["held_out"]
-    table = Table(title=f"{held_out[0]['scenes']} scenes left out of the fit", title_justify="left")
+    title = f"{held_out[0]['scenes']} scenes that the fit did not see"
+    table = Table(title=title, title_justify="left")
     for head in ("quantity", "median error", "95 % within", "within the band"):
         table.add_column(head, justify="left" if head == "quantity" else "right")
     for row in held_out:

@@ -6,6 +6,7 @@ them as JSON.
 
 from __future__ import annotations
 
+import base64
 import json
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import SOONEST
-from fingerpad.emulator.model import LOGARITHMIC, PLACES, STRESSES, Emulator
+from fingerpad.emulator.basis import BENT, SOONEST
+from fingerpad.emulator.model import LOGARITHMIC, ON_BORDER, PLACES, STRESSES, Emulator
 from fingerpad.emulator.question import borders, looked_up
 from fingerpad.receptors.laws import THESIS_RATE
 
@@ -79,10 +80,11 @@ def _model(emulator: Emulator) -> dict[str, Any]:
             "shape": list(group.shape),
             "logarithmic": name in LOGARITHMIC,
             "stress": name in STRESSES,
-            "mean": _numbers(group.mean),
-            "rows": _numbers(group.rows),
-            "coefficients": _numbers(group.coefficients),
-            "band": _numbers(group.band),
+            "mean": _packed(group.mean),
+            "rows": _packed(group.rows),
+            "coefficients": _packed(group.coefficients),
+            "band": _packed(group.band),
+            "scales": _numbers(group.scales),
         }
         for name, group in emulator.groups.items()
     }
@@ -97,6 +99,9 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "hold": _numbers(emulator.moments.hold),
         "soonest": SOONEST,
         "powers": emulator.powers.tolist(),
+        "centres": _packed(emulator.centres),
+        "bent": BENT,
+        "on_border": ON_BORDER,
         "places": _numbers(PLACES),
         "grids": {name: _numbers(grid) for name, grid in emulator.grids.items()},
         "contact_length": base["specimen"]["contact_length"],
@@ -117,8 +122,14 @@ def _model(emulator: Emulator) -> dict[str, Any]:
     }
 
 
-def _numbers(array: np.ndarray) -> Any:
-    """Nested lists of an array, to `DIGITS` digits."""
-    if array.ndim > 1:
-        return [_numbers(row) for row in array]
+def _packed(array: np.ndarray) -> dict[str, Any]:
+    """An array as bytes: large coefficients of either sign nearly cancel, so they need all their
+    digits.
+    """
+    text = base64.b64encode(np.ascontiguousarray(array, "<f8").tobytes()).decode("ascii")
+    return {"float64": text, "columns": array.shape[1] if array.ndim > 1 else 0}
+
+
+def _numbers(array: np.ndarray) -> list[float]:
+    """A list of numbers, to `DIGITS` digits."""
     return [float(f"{value:.{DIGITS}g}") for value in array.tolist()]

@@ -1,14 +1,15 @@
 """From the histories of a sweep to an emulator.
 
 Every quantity is brought to the same moments: shares of the press, times of the hold. Pressures are
-brought to shares of the half width of the contact, so a moving edge does not smear. Of each
-quantity the principal components are polynomials in the knobs. The error is that of scenes left
-out, one at a time, of the whole way from knobs to quantity.
+brought to shares of the half width of the contact, so a moving edge does not smear. The
+principal components of each quantity are Gaussian processes in the knobs, about a parabola of them.
+The error is that of scenes left out, one at a time, of the whole way from knobs to quantity.
 """
 
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,7 +19,14 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import SOONEST, WARPS, basis, cubic_weights, exponents, held
+from fingerpad.emulator.basis import (
+    SOONEST,
+    basis,
+    cubic_weights,
+    exponents,
+    held,
+    kernel,
+)
 from fingerpad.emulator.model import (
     ENERGY,
     LOGARITHMIC,
@@ -28,7 +36,7 @@ from fingerpad.emulator.model import (
     Group,
     Moments,
 )
-from fingerpad.emulator.question import Knob
+from fingerpad.emulator.question import Knob, scaled
 from fingerpad.results import read_history
 from fingerpad.stimuli.motion import NO_TIME
 from fingerpad.units import dimension_of, parse_quantity
@@ -43,13 +51,19 @@ TRUNCATED = 5e-4
 """Root mean square of what principal components may leave of a quantity (of its logarithm, or of
 its scale).
 """
-MOST_PARTS, MOST_DEGREE, MOST_TERMS = 14, 12, 800
-DECAYS = (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)
-"""How much smaller a coefficient is expected to be for each degree more along a knob."""
-NOISES = (1e-10, 1e-8, 1e-6, 1e-4, 1e-2)
-"""Variance of what no polynomial explains, over that of the constant term."""
-SEARCHED = 300
-"""Scenes by which decays and noise are chosen."""
+MOST_PARTS = 14
+DEGREE = 2
+"""Of the trend."""
+FREE = 100.0
+"""Variance of a coefficient of the trend, over that of the Gaussian process."""
+LENGTHS = (0.1, 100.0)
+"""Least and largest length of the Gaussian process; a knob's range is 2."""
+NOISES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
+"""Variance of what no Gaussian process explains, over that of the process."""
+SEARCHED, LEADING = 384, 2
+"""Scenes by which lengths and noise are chosen, and principal components for lengths."""
+SMOOTH = (*SCALARS, "pressure_shape", "skin_displacement_x", "skin_displacement_y")
+"""Quantities whose lengths are the same."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +84,7 @@ class Samples:
         return Samples(self.points[rows], {name: v[rows] for name, v in self.values.items()})
 
 
-def emulate(sweep: str | Path) -> Emulator:
+def emulate(sweep: str | Path, unseen: str | Path | None = None) -> Emulator:
     """Fit an emulator to the histories of a sweep.
 
     Parameters
@@ -78,6 +92,9 @@ def emulate(sweep: str | Path) -> Emulator:
     sweep
         Folder of a finished sweep of presses, with or without a hold, whose file says
         ``histories: true``.
+    unseen
+        Folder of another sweep of the same scene over the same keys, by which the emulator is
+        judged; without, a tenth of the scenes is left out of a first fit for that.
 
     Returns
     -------
@@ -108,7 +125,8 @@ def emulate(sweep: str | Path) -> Emulator:
     base = json.loads(design["about"]["base_scene"])
     moments = _moments(folder, base)
     histories = list(_histories(folder, design, len(knobs)))
-    samples, grids, lost = _samples(histories, base, moments)
+    grids = _grids(histories[0][1])
+    samples, lost = _samples(histories, moments, grids)
     if len(samples.points) < _least(knobs):
         raise SceneError(
             f"{folder}: has {len(samples.points)} scenes that can be emulated; "
@@ -116,11 +134,29 @@ def emulate(sweep: str | Path) -> Emulator:
         )
     about = design["about"] | {"scenes": len(samples.points), "scenes_left_out": lost}
     knobs = _warped(knobs, samples)
+    if unseen:
+        made = _fit(samples, knobs, base, moments, grids, about)
+        made.about["held_out"] = judge(made, _unseen(Path(unseen), made))
+        return made
     every = np.arange(len(samples.points))
     tenth = every % 10 == min(9, len(every) - 1)
     trial = _fit(samples.only(every[~tenth]), knobs, base, moments, grids, about)
     judged = judge(trial, samples.only(every[tenth]))
     return _fit(samples, knobs, base, moments, grids, about | {"held_out": judged})
+
+
+def _unseen(folder: Path, made: Emulator) -> Samples:
+    """What another sweep of the same scene over the same keys shows. Raises SceneError."""
+    design = _design(folder)
+    base = json.loads(design["about"]["base_scene"])
+    keys = [p["key"] for p in design["parameters"]]
+    own = [knob.key for knob in made.knobs]
+    if keys != own:
+        raise SceneError(f"{folder}: is over {', '.join(keys)}; allowed: {', '.join(own)}")
+    if any(base[k] != made.base[k] for k in base.keys() - {"name", "tags", "accuracy"}):
+        raise SceneError(f"{folder}: has another scene; allowed: that of the sweep")
+    histories = list(_histories(folder, design, len(keys)))
+    return _samples(histories, made.moments, made.grids)[0]
 
 
 # --- the sweep ------------------------------------------------------------------------------------
@@ -145,7 +181,9 @@ def _knobs(folder: Path, design: Mapping[str, Any]) -> list[Knob]:
         axis = over.get(p["key"], {})
         ends = axis.get("range") or axis.get("uniform")
         ends = [_number(e, per) for e in ends] if ends else [per * v for v in p["values"]]
-        knobs.append(Knob(p["key"], p["name"], p["unit"], per, min(ends), max(ends)))
+        even = axis.get("spacing") != "logarithmic" and "lognormal" not in axis
+        warp = "linear" if even or min(ends) <= 0 else "logarithm"
+        knobs.append(Knob(p["key"], p["name"], p["unit"], per, min(ends), max(ends), warp))
     return knobs
 
 
@@ -190,9 +228,8 @@ def _moments(folder: Path, base: Mapping[str, Any]) -> Moments:
     return Moments(press, holds if longest else np.zeros(0))
 
 
-def _samples(histories: list[tuple], base: Mapping[str, Any], moments: Moments):
-    """Samples, the grids that they share, and how many histories had nothing to emulate."""
-    first = histories[0][1]
+def _grids(first: xr.Dataset) -> dict[str, np.ndarray]:
+    """What a sweep's histories share: places of the skin and of receptors."""
     grids = {
         "arc": np.linspace(0, float(np.abs(first.skin_arc.values).max()) * 0.98, ARCS),
         "receptor_depth": first.receptor_depth.values,
@@ -202,6 +239,11 @@ def _samples(histories: list[tuple], base: Mapping[str, Any], moments: Moments):
     for name in ("skin_x", "skin_y"):
         of = first[name].values
         grids[name] = np.interp(grids["arc"], first.skin_arc.values[right], of[right])
+    return grids
+
+
+def _samples(histories: list[tuple], moments: Moments, grids: Mapping[str, np.ndarray]):
+    """Samples, and how many histories had nothing to emulate."""
     points, rows, lost = [], [], 0
     for point, history in histories:
         row = _row(history, moments, grids)
@@ -211,7 +253,7 @@ def _samples(histories: list[tuple], base: Mapping[str, Any], moments: Moments):
         else:
             lost += 1
     values = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}
-    return Samples(np.array(points).reshape(len(points), -1), values), grids, lost
+    return Samples(np.array(points).reshape(len(points), -1), values), lost
 
 
 @np.errstate(divide="ignore", invalid="ignore")
@@ -275,85 +317,95 @@ def _pressure_shapes(history: xr.Dataset, load: np.ndarray) -> np.ndarray:
 
 
 def _warped(knobs: list[Knob], samples: Samples) -> list[Knob]:
-    """Each knob on the scale that leaves the least of depth, width and pressure unexplained."""
+    """Each knob that is drawn evenly on the scale that leaves the least of depth, width and
+    pressure unexplained.
+    """
     some = samples.only(np.arange(min(len(samples.points), SEARCHED)))
-    powers = exponents(len(knobs), 6)
     target = np.log(np.stack([some.values[name][:, -1] for name in SCALARS[:3]], axis=1))
     target -= target.mean(axis=0)
 
     def left(of: list[Knob]) -> float:
-        terms = basis(scaled(of, some.points), powers)
-        return min(_missed(terms, powers, (d,) * len(knobs), 1e-6, target) for d in (0.35, 0.55))
+        at = scaled(of, some.points)
+        return _missed(_terms(at, at, np.full(len(of), 2.0)), 1e-4, target)
 
     for k, knob in enumerate(knobs):
-        ways = [w for w in WARPS if knob.low > 0 or (w == "square root" and knob.low == 0)]
-        ways = ways or ["linear"]
+        ways = ("linear", "bent") if knob.warp == "linear" else (knob.warp,)
         tried = [[*knobs[:k], replace(knob, warp=w), *knobs[k + 1 :]] for w in ways]
         knobs = min(tried, key=left)
     return knobs
 
 
-def scaled(knobs: list[Knob], points: np.ndarray) -> np.ndarray:
-    """Points (n, knobs) of the box from -1 to 1."""
-    return np.stack([k.scaled(c) for k, c in zip(knobs, points.T, strict=True)], axis=1)
+def _terms(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.ndarray:
+    """What `Emulator.terms` gives."""
+    trend = basis(points, exponents(points.shape[1], DEGREE))
+    return np.hstack([trend, kernel(points, centres, scales)])
 
 
-def _powers(knobs: int) -> np.ndarray:
-    """Exponents up to the largest total degree whose terms are not too many."""
-    fits = (d for d in range(MOST_DEGREE, 1, -1) if len(exponents(knobs, d)) <= MOST_TERMS)
-    return exponents(knobs, next(fits, 1))
-
-
-def _regressed(terms, powers, decays, noise, target) -> tuple[np.ndarray, np.ndarray]:
+def _regressed(terms: np.ndarray, noise: float, target: np.ndarray):
     """What predictions of scenes left out one at a time miss (n, parts), and the coefficients
-    (terms, parts): a ridge whose penalty grows with the degree (a Gaussian process with a kernel of
-    polynomials; Rasmussen and Williams 2006, eq 5.12).
+    (terms, parts) of a Gaussian process about a trend (Rasmussen and Williams 2006, sections 2.7
+    and 5.4.2).
     """
-    expected = np.prod(np.asarray(decays) ** (2 * powers), axis=1)
-    kernel = (terms * expected) @ terms.T
-    kernel[np.diag_indices(len(kernel))] += noise + 1e-12 * np.trace(kernel) / len(kernel)
-    inverse = np.linalg.inv(kernel)
+    trend, covariance = np.split(terms, [terms.shape[1] - len(terms)], axis=1)
+    total = covariance + FREE * trend @ trend.T
+    total[np.diag_indices(len(total))] += noise
+    inverse = np.linalg.inv(total)
     weights = inverse @ target
-    return weights / np.diag(inverse)[:, None], expected[:, None] * (terms.T @ weights)
+    missed = weights / np.diag(inverse)[:, None]
+    return missed, np.vstack([FREE * trend.T @ weights, weights])
 
 
-def _missed(terms, powers, decays, noise, target) -> float:
+def _missed(terms: np.ndarray, noise: float, target: np.ndarray) -> float:
     """The root mean square of what scenes left out are missed by."""
-    return float(np.sqrt((_regressed(terms, powers, decays, noise, target)[0] ** 2).mean()))
+    return float(np.sqrt((_regressed(terms, noise, target)[0] ** 2).mean()))
 
 
-def _chosen(terms, powers, target) -> tuple[tuple[float, ...], float]:
-    """Decay along each knob and noise that miss least, one after the other, twice."""
-    decays, noise = [0.45] * powers.shape[1], 1e-6
+def _scales(points: np.ndarray, scores: list[np.ndarray]) -> np.ndarray:
+    """Lengths (knobs,) of the Gaussian process that make the scores (n, parts) of the first
+    components of some quantities most likely.
+    """
+    from sklearn.exceptions import ConvergenceWarning  # takes a second
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
 
-    def missed(d: list[float], n: float) -> float:
-        return _missed(terms, powers, d, n, target)
-
-    for _ in range(2):
-        for k in range(len(decays)):
-            ways = [[*decays[:k], d, *decays[k + 1 :]] for d in DECAYS]
-            decays = min(ways, key=lambda way: missed(way, noise))
-        noise = min(NOISES, key=lambda n: missed(decays, n))
-    return tuple(decays), noise
+    points = points[:SEARCHED]
+    trend = basis(points, exponents(points.shape[1], DEGREE))
+    rest = np.hstack([score[:SEARCHED, :LEADING] for score in scores])
+    rest = rest - trend @ np.linalg.lstsq(trend, rest, rcond=None)[0]
+    varies = rest.std(axis=0) > 1e-9
+    if not varies.any():
+        return np.full(points.shape[1], LENGTHS[1])
+    lengths = Matern(np.full(points.shape[1], 2.0), LENGTHS, nu=2.5)
+    process = GaussianProcessRegressor(
+        ConstantKernel(1.0, (1e-2, 1e4)) * lengths + WhiteKernel(1e-3, (1e-8, 1.0))
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # a knob that hardly matters
+        found = process.fit(points, rest[:, varies] / rest[:, varies].std(axis=0)).kernel_
+    return np.broadcast_to(found.k1.k2.length_scale, points.shape[1]).copy()
 
 
 def _fit(samples: Samples, knobs, base, moments, grids, about) -> Emulator:
     """An emulator of samples, with the errors of scenes left out."""
-    powers = _powers(len(knobs))
-    terms = basis(scaled(knobs, samples.points), powers)
-    made = Emulator(knobs, base, moments, grids, powers, {}, about)
-    groups = {
-        name: _group(terms, powers, values, name in LOGARITHMIC)
-        for name, values in samples.values.items()
-        if name != ENERGY
-    }
+    at = scaled(knobs, samples.points)
+    powers = exponents(len(knobs), DEGREE)
+    made = Emulator(knobs, base, moments, grids, powers, at, {}, about)
+    parts = {name: Parts.of(samples.values[name], name) for name in samples.values}
+    del parts[ENERGY]
+    scales = _scales(at, [parts[name].scores for name in SMOOTH])
+    every, terms = np.arange(len(at)), _terms(at, at, scales)
+    groups = {name: _group(terms, every, p, scales) for name, p in parts.items()}
     layers, of = made.layers(samples.points), grids["receptor_depth"]
     for k, depth in enumerate(np.unique(of)):
-        for layer in np.unique(layers[:, k]):
-            rows = layers[:, k] == layer
-            if rows.sum() > len(knobs) + 1:
-                values = samples.values[ENERGY][rows][..., of == depth]
-                groups[f"{ENERGY}_{k}_{layer}"] = _group(terms[rows], powers, values, False)
+        kept = {layer: np.flatnonzero(layers[:, k] == layer) for layer in np.unique(layers[:, k])}
+        values = samples.values[ENERGY][..., of == depth]
+        parts = {layer: Parts.of(values[rows], ENERGY) for layer, rows in kept.items()}
+        most = max(kept, key=lambda layer: len(kept[layer]))
+        scales = _scales(at[kept[most]], [parts[most].scores])
+        terms = _terms(at, at, scales)
+        for layer, rows in kept.items():
+            if len(rows) > len(knobs) + 1:
+                groups[f"{ENERGY}_{k}_{layer}"] = _group(terms, rows, parts[layer], scales)
     return replace(made, groups=groups)
 
 
@@ -362,44 +414,74 @@ def _least(knobs: list[Knob]) -> int:
     return 4 * len(knobs) + 4
 
 
-def _group(terms: np.ndarray, powers: np.ndarray, values: np.ndarray, logarithmic: bool) -> Group:
-    """Polynomials of the principal components of a quantity, (n, ...) values at (n, terms)."""
-    flat = values.reshape(len(values), -1)
-    target = np.log(flat) if logarithmic else flat
-    mean = target.mean(axis=0)
-    parts, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
-    rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
-    count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
-    scores = parts[:, :count] * sizes[:count]
-    how = _chosen(terms[:SEARCHED], powers, scores[:SEARCHED])
-    missed, found = _regressed(terms, powers, *how, scores)
-    miss = target - mean - (scores - missed) @ rows[:count]
+@dataclass(frozen=True)
+class Parts:
+    """A quantity's mean, its principal components and their scores; what is left is small.
+
+    Attributes
+    ----------
+    shape : (...) of the quantity, moments first.
+    target : (n, outputs) values, or their logarithms.
+    mean, rows, scores : (outputs,), (parts, outputs), (n, parts).
+    """
+
+    shape: tuple[int, ...]
+    target: np.ndarray
+    mean: np.ndarray
+    rows: np.ndarray
+    scores: np.ndarray
+
+    @classmethod
+    def of(cls, values: np.ndarray, name: str) -> Parts:
+        """Of values (n, ...)."""
+        flat = values.reshape(len(values), -1)
+        target = np.log(flat) if name in LOGARITHMIC else flat
+        mean = target.mean(axis=0)
+        own, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
+        rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
+        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
+        return cls(values.shape[1:], target, mean, rows[:count], own[:, :count] * sizes[:count])
+
+
+def _group(terms: np.ndarray, rows: np.ndarray, parts: Parts, scales: np.ndarray) -> Group:
+    """A quantity that some of the scenes have, at the terms (n, terms) of all."""
+    trend = terms.shape[1] - len(terms)
+    kept = np.concatenate([np.arange(trend), trend + rows])
+    own, some = terms[np.ix_(rows, kept)], rows[:SEARCHED]
+    few = terms[np.ix_(some, np.concatenate([np.arange(trend), trend + some]))]
+    noise = min(NOISES, key=lambda n: _missed(few, n, parts.scores[:SEARCHED]))
+    missed, found = _regressed(own, noise, parts.scores)
+    coefficients = np.zeros((terms.shape[1], found.shape[1]))
+    coefficients[kept] = found
+    miss = parts.target - parts.mean - (parts.scores - missed) @ parts.rows
     rank = min(int(np.ceil((len(miss) + 1) * COVERED)), len(miss)) - 1
     band = np.sort(np.abs(miss), axis=0)[rank]
-    return Group(values.shape[1:], mean, rows[:count], found, band)
+    return Group(parts.shape, parts.mean, parts.rows, coefficients, band, scales)
 
 
 def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
     """How far an emulator is off for scenes that it was not fitted to, a row a quantity.
 
-    Relative errors at the last moment; of energies under the middle, at all depths together.
-    ``covered`` is the share within the emulator's own band, at all moments and receptors.
+    Relative errors from the end of the press on; of energies under the middle. ``covered`` is the
+    share within the emulator's own band, at all moments and receptors.
     """
     found, rows = emulator.values(unseen.points), []
-    middle = emulator.grids["receptor_offset"] == 0
-    for name in (*LOGARITHMIC, ENERGY):
-        ratio, miss = found[name] / unseen.values[name], found[name] - unseen.values[name]
-        if name in LOGARITHMIC:
-            miss = np.log(ratio)
-        last = ratio[:, -1]
-        if name == ENERGY:
-            band, last = emulator.energy_band(unseen.points), last[:, middle] ** 2
-            name = "strain_energy_density"
-        else:
-            band = emulator.groups[name].band.reshape(miss.shape[1:])
-        inside = np.abs(miss) <= band
-        off = np.abs(last[np.isfinite(last)] - 1)
-        row = {"quantity": name, "scenes": len(miss), "median": float(np.median(off))}
+    top, grids = len(emulator.moments.press) - 1, emulator.grids
+
+    def add(name: str, ratio: np.ndarray, inside: np.ndarray) -> None:
+        off = np.abs(ratio[np.isfinite(ratio)] - 1)
+        row = {"quantity": name, "scenes": len(unseen.points), "median": float(np.median(off))}
         row |= {"within_95": float(np.quantile(off, 0.95)), "covered": float(inside.mean())}
         rows.append(row)
+
+    for name in LOGARITHMIC:
+        ratio = found[name] / unseen.values[name]
+        inside = np.abs(np.log(ratio)) <= emulator.groups[name].band.reshape(ratio.shape[1:])
+        add(name, ratio[:, top:] if name != "estimated_error" else ratio, inside)
+    inside = np.abs(found[ENERGY] - unseen.values[ENERGY]) <= emulator.energy_band(unseen.points)
+    for depth in np.unique(grids["receptor_depth"]):
+        at = grids["receptor_depth"] == depth
+        middle = at & (grids["receptor_offset"] == 0)
+        ratio = found[ENERGY][:, top:, middle] / unseen.values[ENERGY][:, top:, middle]
+        add(f"strain_energy_{1e6 * depth:.4g}_um", ratio**2, inside[..., at])
     return rows

@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, cubic_weights, held
-from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up
+from fingerpad.emulator.basis import basis, cubic_weights, held, kernel
+from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up, scaled
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
 
@@ -39,8 +39,11 @@ PLACES = np.sin(np.pi / 2 * np.linspace(0, 1, 25))
 """Shares of the contact's half width, denser towards its edge."""
 NODES = 161
 """Skin nodes of an answer."""
-FORMAT = 2
-_CHUNK = 20_000
+ON_BORDER = 1e-8
+"""m; a receptor this near a border belongs to the layer below, as the solver has it."""
+FORMAT = 3
+_CHUNK = 2_000
+_PARTS = ("mean", "rows", "coefficients", "band", "scales")
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ class Moments:
 
 @dataclass(frozen=True)
 class Group:
-    """The polynomials of one quantity.
+    """The coefficients of one quantity.
 
     The quantities are `LOGARITHMIC` ones; ``pressure_shape``, pressure over the mean pressure at
     `PLACES`; ``skin_displacement_x`` and ``_y`` over the depth; ``energy_root_<depth>_<layer>``,
@@ -84,6 +87,7 @@ class Group:
     mean, rows, band : (outputs,), (parts, outputs), (outputs,) mean, principal components, and the
         half width of the band; in the logarithm where that is emulated.
     coefficients : (terms, parts).
+    scales : (knobs,) lengths of the Gaussian process.
     """
 
     shape: tuple[int, ...]
@@ -91,6 +95,7 @@ class Group:
     rows: np.ndarray
     coefficients: np.ndarray
     band: np.ndarray
+    scales: np.ndarray
 
     def folded(self, weights: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Mean and components of the quantity at weighted moments: (m,), (parts, m)."""
@@ -102,7 +107,7 @@ class Group:
         return mean, rows
 
     def at(self, terms: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """What components (parts, m) add to the mean at polynomials (n, terms): (n, m); the
+        """What components (parts, m) add to the mean at terms (n, terms): (n, m); the
         products are taken in the order that is less work.
         """
         (n, many), (parts, m) = terms.shape, rows.shape
@@ -126,7 +131,9 @@ class Emulator:
     grids : dict
         Arcs of the skin and its places at rest; depths and offsets of the receptors; m.
     powers : numpy.ndarray
-        (terms, knobs) degrees of the polynomials.
+        (polynomials, knobs) degrees of the trend.
+    centres : numpy.ndarray
+        (scenes, knobs) where the sweep's scenes lie, from -1 to 1.
     groups : dict
         Quantity -> `Group`.
     about : dict
@@ -152,13 +159,16 @@ class Emulator:
     moments: Moments
     grids: Mapping[str, np.ndarray]
     powers: np.ndarray
+    centres: np.ndarray
     groups: Mapping[str, Group]
     about: Mapping[str, Any]
 
-    def terms(self, points: np.ndarray) -> np.ndarray:
-        """Polynomials (n, terms) at points (n, knobs), SI."""
-        columns = zip(self.knobs, np.asarray(points, float).T, strict=True)
-        return basis(np.stack([k.scaled(c) for k, c in columns], axis=1), self.powers)
+    def terms(self, points: np.ndarray, scales: np.ndarray) -> np.ndarray:
+        """Terms (n, polynomials + scenes) at points (n, knobs), SI: the trend's polynomials, and
+        the covariance of these lengths with each scene of the sweep.
+        """
+        at = scaled(self.knobs, points)
+        return np.hstack([basis(at, self.powers), kernel(at, self.centres, scales)])
 
     def values(
         self,
@@ -197,9 +207,13 @@ class Emulator:
         }
         parts: dict[str, list[np.ndarray]] = {name: [] for name in names}
         for start in range(0, len(points), _CHUNK):
-            terms = self.terms(points[start : start + _CHUNK])
+            some, known = points[start : start + _CHUNK], {}
             for name, (mean, rows) in folded.items():
-                value = mean + self.groups[name].at(terms, rows)
+                group = self.groups[name]
+                alike = group.scales.tobytes()
+                if alike not in known:
+                    known[alike] = self.terms(some, group.scales)
+                value = mean + group.at(known[alike], rows)
                 parts[name].append(np.exp(value) if name in LOGARITHMIC else value)
         shapes = {n: (-1, *self.groups[n].shape) for n in names}
         if weights is not None:
@@ -230,7 +244,7 @@ class Emulator:
                 points[:, column[key]] if key in column else looked_up(self.base, key)
                 for key in keys
             )
-            found += np.reshape(at, (-1, 1)) < depths
+            found += np.reshape(at, (-1, 1)) < depths + ON_BORDER
         return found
 
     def _joined(self, points: np.ndarray, parts: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -407,8 +421,8 @@ class Emulator:
         """Write a file that `load_emulator` reads: numpy's npz, without pickle.
 
         ``about`` is JSON text: format, knobs, scene, shapes, provenance. Arrays are ``press``,
-        ``hold``, ``powers``, ``grid_<name>``, and of each quantity ``<name>_mean``, ``_rows``,
-        ``_coefficients`` and ``_band``.
+        ``hold``, ``powers``, ``centres``, ``grid_<name>``, and of each quantity ``<name>_mean``,
+        ``_rows``, ``_coefficients``, ``_band`` and ``_scales``.
         """
         about = {
             "format": FORMAT,
@@ -417,10 +431,11 @@ class Emulator:
             "shapes": {name: list(group.shape) for name, group in self.groups.items()},
             "about": self.about,
         }
-        arrays = {"press": self.moments.press, "hold": self.moments.hold, "powers": self.powers}
+        arrays = {"press": self.moments.press, "hold": self.moments.hold}
+        arrays |= {"powers": self.powers, "centres": self.centres}
         arrays |= {f"grid_{name}": grid for name, grid in self.grids.items()}
         for name, group in self.groups.items():
-            for part in ("mean", "rows", "coefficients", "band"):
+            for part in _PARTS:
                 arrays[f"{name}_{part}"] = getattr(group, part)
 
         def write(partial: Path) -> None:
@@ -459,16 +474,15 @@ def load_emulator(file: str | Path) -> Emulator:
         groups = {
             name: Group(
                 tuple(shape),
-                *(arrays[f"{name}_{p}"] for p in ("mean", "rows", "coefficients", "band")),
+                *(arrays[f"{name}_{part}"] for part in _PARTS),
             )
             for name, shape in about["shapes"].items()
         }
         grids = {k.removeprefix("grid_"): v for k, v in arrays.items() if k.startswith("grid_")}
         knobs = [Knob(**knob) for knob in about["knobs"]]
         moments = Moments(arrays["press"], arrays["hold"])
-        return Emulator(
-            knobs, about["base"], moments, grids, arrays["powers"], groups, about["about"]
-        )
+        places = arrays["powers"], arrays["centres"]
+        return Emulator(knobs, about["base"], moments, grids, *places, groups, about["about"])
     except FileNotFoundError:
         raise SceneError(f"{file}: is not there; allowed: the file of an emulator") from None
     except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):

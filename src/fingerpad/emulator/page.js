@@ -1,15 +1,30 @@
 "use strict";
-// The emulator of fingerpad.emulator, in the same few steps: polynomials of the knobs, principal
-// components, cubics in time. All numbers are SI.
-const model = JSON.parse(document.getElementById("model").textContent);
+// The emulator of fingerpad.emulator, in the same few steps: a Gaussian process in the knobs,
+// principal components, cubics in time. All numbers are SI.
+const model = JSON.parse(document.getElementById("model").textContent, (key, value) => unpacked(value));
 const FORCE = "motion[0].press_to_force", RATE = "motion[0].rate", CURVE = "stimulus.curvature";
-const WARPS = { "linear": v => v, "square root": Math.sqrt, "logarithm": Math.log };
+const WARPS = { "linear": v => v, "logarithm": v => Math.log(v), "bent": bent };
 const STEADY_DEPTHS = [600e-6, 915e-6];
+
+// Arrays are in the page as bytes: a list of numbers, or of rows where they have columns.
+function unpacked(value) {
+  if (!value || value.float64 === undefined) return value;
+  const bytes = Uint8Array.from(atob(value.float64), letter => letter.charCodeAt(0));
+  const all = new Float64Array(bytes.buffer), rows = [];
+  if (!value.columns) return all;
+  for (let k = 0; k < all.length; k += value.columns) rows.push(all.subarray(k, k + value.columns));
+  return rows;
+}
 
 // --- the mathematics -----------------------------------------------------------------------------
 
+function bent(value, knob) {
+  const share = model.bent * (value - knob.low) / (knob.high - knob.low);
+  return share < 0 ? share : Math.log1p(share);
+}
+
 function scaled(knob, value) {
-  const warp = WARPS[knob.warp], low = warp(knob.low), high = warp(knob.high);
+  const warp = v => WARPS[knob.warp](v, knob), low = warp(knob.low), high = warp(knob.high);
   return 2 * (warp(value) - low) / (high - low) - 1;
 }
 
@@ -21,10 +36,15 @@ function legendre(x, degree) {
   return found;
 }
 
-function basis(point) {
+// Polynomials of a point, then its covariance with each scene that was simulated (Matern's, 5/2).
+function terms(point, scales) {
   const most = Math.max(1, ...model.powers[model.powers.length - 1]);
   const tables = point.map(x => legendre(x, most));
-  return model.powers.map(row => row.reduce((product, n, k) => product * tables[k][n], 1));
+  const trend = model.powers.map(row => row.reduce((product, n, k) => product * tables[k][n], 1));
+  return trend.concat(model.centres.map(centre => {
+    const far = Math.sqrt(5) * Math.hypot(...centre.map((c, k) => (point[k] - c) / scales[k]));
+    return (1 + far + far * far / 3) * Math.exp(-far);
+  }));
 }
 
 function cubicWeights(grid, at) {
@@ -82,7 +102,7 @@ function layers(own, depths) {
     return k < 0 ? model.thicknesses[key] : own[k];
   };
   const ends = model.borders.map(keys => keys.reduce((sum, key) => sum + at(key), 0));
-  return depths.map(depth => ends.filter(end => end < depth).length);
+  return depths.map(depth => ends.filter(end => end < depth + model.on_border).length);
 }
 
 // Numbers of a list; energies of a layer that too few scenes had are none.
@@ -109,9 +129,13 @@ function joinEnergies(found, own) {
 function answer(state) {
   const own = model.knobs.map(k => state.values[k.key] / (k.key === FORCE || k.key === RATE ? state.modulus : 1));
   const outside = model.knobs.filter((k, i) => own[i] < k.low * (1 - 1e-9) || own[i] > k.high * (1 + 1e-9));
-  const terms = basis(model.knobs.map((k, i) => scaled(k, own[i])));
+  const point = model.knobs.map((k, i) => scaled(k, own[i])), known = {};
   const flat = {}, top = state.values[FORCE] / state.values[RATE];
-  for (const name of Object.keys(model.groups)) flat[name] = quantity(name, terms);
+  for (const name of Object.keys(model.groups)) {
+    const scales = model.groups[name].scales;
+    known[scales] = known[scales] || terms(point, scales);
+    flat[name] = quantity(name, known[scales]);
+  }
   const holds = model.hold.filter(t => t < state.hold * (1 - 1e-9));
   if (state.hold > 0) holds.push(state.hold);
   const moments = [...model.press.map(share => ({ share, hold: 0 })), ...holds.map(hold => ({ share: 1, hold }))];

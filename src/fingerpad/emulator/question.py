@@ -58,10 +58,9 @@ class Knob:
 
     def scaled(self, values: np.ndarray) -> np.ndarray:
         """Values as shares of the box, from -1 to 1."""
-        low, high, at = WARPS[self.warp](
-            np.array([np.full(np.shape(values), self.low), np.full_like(values, self.high), values])
-        )
-        return 2 * (at - low) / (high - low) - 1
+        ends = np.array([self.low, self.high])
+        low, high = WARPS[self.warp](ends, *ends)
+        return 2 * (WARPS[self.warp](values, *ends) - low) / (high - low) - 1
 
     def shown(self, value: float) -> str:
         """A value with its unit."""
@@ -70,6 +69,12 @@ class Knob:
     def record(self) -> dict[str, Any]:
         """As plain data."""
         return asdict(self)
+
+
+def scaled(knobs: list[Knob], points: np.ndarray) -> np.ndarray:
+    """Points (n, knobs), SI, of the box from -1 to 1."""
+    columns = zip(knobs, np.asarray(points, float).T, strict=True)
+    return np.stack([knob.scaled(column) for knob, column in columns], axis=1)
 
 
 @dataclass(frozen=True)
