@@ -224,6 +224,42 @@ def test_another_sweep_judges_it(pad, tmp_path):
         fingerpad.emulate(few, other)
 
 
+def test_it_grows_where_it_knows_least_until_it_is_good_or_the_budget_is_spent(
+    tmp_path, monkeypatch, capsys
+):
+    """The made-up pad is simulated in place of the solver's."""
+
+    def simulated(base, over, out, **more):
+        read = load_sweep({"over": over, "histories": True}, "grown", base)
+        lay_out(read, out, 1)
+        (out / "histories").mkdir()
+        found = json.loads((out / "design.json").read_text())
+        for key, scene in zip(found["keys"], Design(read), strict=True):
+            history(scene).to_netcdf(out / "histories" / f"{key}.nc")
+
+    monkeypatch.setattr("fingerpad.emulator.growing.run_sweep", simulated)
+    few, file = made_up(tmp_path / "few", 24), tmp_path / "pad.emulator"
+    start = fingerpad.emulate(few)
+    words = ["emulate", str(few), "--out", str(file), "--grow"]
+    assert main([*words, "1e-9", "--scenes", "40"]) == 0
+    assert "40 scenes added: the budget is spent before 1e-07 %" in capsys.readouterr().out
+    spent = load_emulator(file)
+    assert spent.about["scenes"] == 64 and not spent.about["grown"]["met"]
+    points = np.array(inside(200, seed=5))[:, :3] * [1, GF, GF]
+    exact = np.array([truth(*p, p[1] / p[2] + 2.0)[1] for p in points])
+    drawn = fingerpad.emulate(made_up(tmp_path / "drawn", 64))
+    worst = [
+        np.abs(of.values(points, ("contact_width",))["contact_width"][:, -1] / 2 / exact - 1).max()
+        for of in (start, spent, drawn)
+    ]
+    assert worst[1] < 0.3 * worst[0] and worst[1] < worst[2]
+    assert main([*words, "0.5"]) == 0
+    assert "0 scenes added: 50 % is reached" in capsys.readouterr().out
+    assert load_emulator(file).about["scenes"] == 64  # those that were added stay
+    assert main([*words, "-1"]) == 2
+    assert "tolerance: -1 is no limit; allowed: above zero" in capsys.readouterr().err
+
+
 def test_a_moving_edge_does_not_smear(pad):
     """The pressure is the parabola of the made-up pad, which ends at its own edge."""
     found = pad.predict(scene(curvature=700.0)).isel(time=-1)

@@ -228,6 +228,12 @@ def _parser() -> argparse.ArgumentParser:
     emulate("folder", metavar="SWEEP_DIR", type=Path, help="the folder of the sweep")
     judges = "the folder of another sweep over the same keys: how far off the emulator is for it"
     emulate("--unseen", metavar="SWEEP_DIR", type=Path, help=judges)
+    until = "add scenes where it knows least until 95 %% are within X, such as 0.01"
+    emulate("--grow", metavar="X", type=float, help=until)
+    emulate("--scenes", metavar="N", type=int, default=500, help="most to add (default: 500)")
+    late = "none is begun later (default: no limit)"
+    emulate("--seconds", metavar="S", type=float, default=float("inf"), help=late)
+    emulate("--cores", **count, help="processes at a time (default: 1)")
     explore("emulator", metavar="FILE", type=Path, help="the file of the emulator")
     file: dict[str, Any] = {"metavar": "FILE", "type": Path, "required": True}
     emulate("--out", **file, help="the file of the emulator, such as pad.emulator")
@@ -326,7 +332,7 @@ def _benchmark(options: argparse.Namespace) -> int:
 
 def _emulate(options: argparse.Namespace) -> None:
     _check_writable(options.out, directory=False)
-    emulators.emulate_folder(options.folder, options.out, options.unseen, options.quiet)
+    emulators.emulate_folder(options)
 
 
 def _explore(options: argparse.Namespace) -> None:

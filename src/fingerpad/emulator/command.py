@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 from fingerpad.emulator.explorer import page
 from fingerpad.emulator.fitting import emulate
+from fingerpad.emulator.growing import grow
 from fingerpad.emulator.model import Emulator, load_emulator
 from fingerpad.files import write_text
 
 
-def emulate_folder(folder: Path, out: Path, unseen: Path | None, quiet: bool) -> None:
+def emulate_folder(options: Any) -> None:
     """Fit an emulator, write it, and show how far off it is. Raises SceneError."""
-    emulator = emulate(folder, unseen)
-    emulator.save(out)
-    if not quiet:
-        _show(emulator, out)
+    if options.grow is None:
+        emulator = emulate(options.folder, options.unseen)
+    else:
+        budget = {"scenes": options.scenes, "seconds": options.seconds, "cores": options.cores}
+        progress = None if options.quiet else _tell
+        emulator = grow(
+            options.folder, options.grow, unseen=options.unseen, progress=progress, **budget
+        )
+    emulator.save(options.out)
+    if not options.quiet:
+        _show(emulator, options.out)
+
+
+def _tell(added: int, error: float) -> None:
+    print(f"{added} scenes added: 95 % of the scenes left out are within {100 * error:.3g} %")
 
 
 def _show(emulator: Emulator, out: Path) -> None:
@@ -34,6 +47,10 @@ def _show(emulator: Emulator, out: Path) -> None:
     console.print(table)
     left_out = emulator.about["scenes_left_out"]
     lost = f", {left_out} with gaps were left out" if left_out else ""
+    if grown := emulator.about.get("grown"):
+        asked = f"{100 * grown['tolerance']:.3g} %"
+        end = f"{asked} is reached" if grown["met"] else f"the budget is spent before {asked}"
+        console.print(f"{grown['added']} scenes added: {end}")
     console.print(f"{emulator.about['scenes']} scenes{lost}; the emulator is in {out}", crop=False)
 
 

@@ -62,6 +62,12 @@ class Knob:
         low, high = WARPS[self.warp](ends, *ends)
         return 2 * (WARPS[self.warp](values, *ends) - low) / (high - low) - 1
 
+    def unscaled(self, shares: np.ndarray) -> np.ndarray:
+        """Values of shares from -1 to 1."""
+        even = np.geomspace if self.warp == "logarithm" else np.linspace
+        values = even(self.low, self.high, 4001)
+        return np.interp(shares, self.scaled(values), values)
+
     def shown(self, value: float) -> str:
         """A value with its unit."""
         return f"{value / self.per_unit:.4g} {self.unit if self.unit != '1' else ''}".strip()
