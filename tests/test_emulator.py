@@ -309,13 +309,19 @@ def test_a_factor_of_all_moduli_is_exact(pad):
         (scene(specimen={"outline": {"apex_radius": "9 mm"}}), "specimen.outline.apex_radius"),
         (scene(specimen={"layers": {"fat": {"youngs_modulus": "9 kPa"}}}), "specimen.layers.fat"),
         (scene(outputs={"receptors": {"depths": ["700 um"]}}), "outputs.receptors"),
+        (scene() | {"stimulus": {"shape": "bar", "width": "2 mm"}}, 'stimulus.shape: "bar"'),
+        (scene() | {"motion": [{"press_to_force": "20 gf"}, {"hold": "1 s"}]}, "rate: left out"),
+        (
+            scene(specimen={"layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}}),
+            "allowed: left out, as in the sweep",
+        ),
     ],
 )
 def test_what_was_not_simulated_is_refused(pad, changed, key):
     with pytest.raises(fingerpad.SceneError) as caught:
         pad.predict(changed)
     text = str(caught.value)
-    assert key in text and "; allowed: " in text and "\n" not in text
+    assert key in text and "; allowed: " in text and "\n" not in text and "null" not in text
 
 
 def test_outside_the_box_must_be_asked_for_and_has_no_band(pad):

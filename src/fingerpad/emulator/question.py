@@ -188,29 +188,26 @@ def ask(
     if hold is not None and hold > longest * (1 + SAME):
         raise _refusal(scene.name, "motion[1].hold", f"{hold:g} s", f"up to {longest:g} s")
     point, outside = [], []
+    _same(scene.name, ("stimulus", "shape"), said, known)  # first, for its other keys depend on it
     for knob in knobs:
         path = path_of(knob.key)
-        value = said.pop(path, math.nan)
+        allowed = f"{knob.shown(knob.low)} to {knob.shown(knob.high)}"
+        value = said.pop(path, None)
         known.pop(path, None)
+        if not isinstance(value, (int, float)):
+            raise _refusal(scene.name, knob.key, _word(value), allowed)
         if path == ("stimulus", "curvature") and value < FLAT and knob.low < FLAT:
             value = max(value, knob.low)
         if path in (_FORCE, _RATE):
             value /= modulus
         if not knob.low * (1 - SAME) <= value <= knob.high * (1 + SAME):
             what = knob.shown(value) + (f" at a modulus factor of {modulus:.3g}") * (modulus != 1)
-            allowed = f"{knob.shown(knob.low)} to {knob.shown(knob.high)}"
             outside.append(str(_refusal(scene.name, knob.key, what, allowed)))
         point.append(value)
     if modulus != 1:  # what is left of the force and its rate is the sweep's own
         said |= {p: said[p] / modulus for p in (_FORCE, _RATE) if isinstance(said.get(p), float)}
     for path in sorted(said.keys() | known.keys(), key=str):
-        if not _equal(said.get(path), known.get(path)):
-            raise _refusal(
-                scene.name,
-                _dotted(path),
-                json.dumps(said.get(path)),
-                f"{json.dumps(known.get(path))}, as in the sweep",
-            )
+        _same(scene.name, path, said, known)
     receptors = scene.outputs.receptors
     places = tuple((d, o) for d in receptors.depths for o in receptors.offsets)
     return Question(np.array(point), modulus, hold, places, tuple(outside))
@@ -243,6 +240,17 @@ def _modulus(name: str, said: dict[tuple, Any], known: dict[tuple, Any]) -> floa
     for path in moduli:
         del said[path], known[path]
     return 1.0 if abs(ratios[0] - 1) < SAME else ratios[0]
+
+
+def _same(name: str, path: tuple, said: Mapping[tuple, Any], known: Mapping[tuple, Any]) -> None:
+    """Refuse another value than the sweep's."""
+    value, allowed = said.get(path), known.get(path)
+    if not _equal(value, allowed):
+        raise _refusal(name, _dotted(path), _word(value), f"{_word(allowed)}, as in the sweep")
+
+
+def _word(value: Any) -> str:
+    return "left out" if value is None else json.dumps(value)
 
 
 def _equal(a: Any, b: Any) -> bool:
