@@ -49,15 +49,18 @@ def truth(curvature, force, rate, time):
 
 
 def history(scene):
-    """A history of the made-up pad, in the form of the solver's."""
+    """A history of the made-up pad, in the form of the solver's; of a body of revolution the right
+    half, with the force in N.
+    """
     press, hold = scene.motion
     force, rate, curvature = press.press_to_force, press.rate, scene.stimulus.curvature
     top = force / rate
     after = np.expm1(np.linspace(0, np.log1p(hold.hold / 0.05), 16))[1:] * 0.05
     time = np.concatenate([[0], top * np.arange(1, 13) / 12, top + after])
     depth, half, middle = np.array([truth(curvature, force, rate, t) for t in time]).T
-    load = np.minimum(time / top, 1) * force / LENGTH
-    x = np.concatenate([-RIGHT[:0:-1], RIGHT])
+    turned = scene.axisymmetric
+    load = np.minimum(time / top, 1) * force / (1 if turned else LENGTH)
+    x = RIGHT if turned else np.concatenate([-RIGHT[:0:-1], RIGHT])
     with np.errstate(all="ignore"):
         share = np.nan_to_num(np.abs(x) / half[:, None], nan=9, posinf=9)
     receptors = [(d, o) for d in (600e-6, 915e-6) for o in (0.0, 1e-3)]
@@ -77,6 +80,8 @@ def history(scene):
         "skin_displacement_y": (skin, -depth[:, None] * np.exp(-np.abs(x) / 2e-3)),
         "strain_energy_density": (("time", "receptor"), energy),
     }
+    if turned:
+        data["contact_radius"] = outputs, half
     places = {
         "time": time,
         "skin_x": ("skin_node", x),
@@ -88,10 +93,10 @@ def history(scene):
     return xr.Dataset(data, places, {"estimated_error": 0.02 + 1e-5 * curvature})
 
 
-def made_up(folder, samples, seed=3, over=OVER):
+def made_up(folder, samples, seed=3, over=OVER, base=SCENE):
     """The folder of a sweep whose histories are the made-up pad's."""
     keys = {"design": "sobol", "samples": samples, "seed": seed, "histories": True}
-    read = load_sweep({"over": over, **keys}, "made_up", fingerpad.load_scene(SCENE))
+    read = load_sweep({"over": over, **keys}, "made_up", fingerpad.load_scene(base))
     lay_out(read, folder, 1)
     (folder / "histories").mkdir()
     found = json.loads((folder / "design.json").read_text())
@@ -295,6 +300,23 @@ def test_a_factor_of_all_moduli_is_exact(pad):
         assert hard.strain_energy_density.values == pytest.approx(2 * energy, rel=1e-5)
 
 
+def test_a_sphere_on_a_body_of_revolution_is_emulated(tmp_path):
+    """Its force is in N, and its skin begins on the axis."""
+    sphere = {"kinematics": "axisymmetric", "stimulus": {"shape": "sphere", "curvature": "210 1/m"}}
+    pad = fingerpad.emulate(made_up(tmp_path / "turned", 128, base=SCENE | sphere))
+    found = pad.predict(scene() | sphere).isel(time=-1)
+    depth, half, middle = truth(210.0, 20 * GF, 40 * GF, 1.5)
+    assert float(found.indentation_depth) == pytest.approx(depth, rel=5e-3)
+    assert float(found.force) == pytest.approx(20 * GF) and found.force.units == "N"
+    assert found.skin_x.values[0] == 0 and (np.diff(found.skin_x) >= 0).all()
+    exact = middle * np.clip(1 - (found.skin_x.values / half) ** 2, 0, None)
+    assert np.abs(found.contact_pressure.values - exact).max() < 0.02 * middle
+    shape = pad.groups["pressure_shape"]  # over the force over the area: less than 2 on the axis
+    assert np.abs(shape.mean).max() < 3
+    with pytest.raises(fingerpad.SceneError, match="shape"):
+        pad.predict(scene())
+
+
 # --- refusals and files ---------------------------------------------------------------------------
 
 
@@ -383,6 +405,14 @@ def test_the_commands_write_and_refuse(folder, tmp_path, capsys):
         said = capsys.readouterr().err
         assert said.count("\n") == 1 and "; allowed: " in said and words[1] in said
     assert not (tmp_path / "x").exists()
+
+
+def test_words_need_an_emulator_each(tmp_path):
+    softness = {"words": {"soft": "10 kPa", "hard": "20 kPa"}}
+    over = OVER | {"specimen.layers.fat.youngs_modulus": softness}
+    folder = made_up(tmp_path / "words", 4, over=over)
+    with pytest.raises(fingerpad.SceneError, match="modulus: .*an emulator for each of its values"):
+        fingerpad.emulate(folder)
 
 
 def test_a_sweep_without_histories_is_refused(tmp_path):

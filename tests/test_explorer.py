@@ -11,7 +11,7 @@ import yaml
 import fingerpad
 from fingerpad.emulator.explorer import page
 from test_browser import BROWSER, PHONE, walk
-from test_emulator import OVER, made_up
+from test_emulator import OVER, SCENE, made_up
 
 pytestmark = pytest.mark.browser
 
@@ -58,14 +58,19 @@ document.body.append(result);
 </script></body>"""
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
+SPHERE = {"kinematics": "axisymmetric", "stimulus": {"shape": "sphere", "curvature": "210 1/m"}}
+
+
+@pytest.fixture(scope="module", params=[{}, SPHERE], ids=["cylinder", "sphere"])
+def made(tmp_path_factory, request):
     """An emulator, its page, and what the browser found while every knob was turned."""
     if BROWSER is None:
         pytest.skip("no chromium here: apt-get install chromium")
     folder = tmp_path_factory.mktemp("explorer")
     thickness = {"specimen.outline.epidermis_thickness": {"range": ["0.5 mm", "1.2 mm"]}}
-    pad = fingerpad.emulate(made_up(folder / "sweep", 128, over=OVER | thickness))
+    pad = fingerpad.emulate(
+        made_up(folder / "sweep", 128, over=OVER | thickness, base=SCENE | request.param)
+    )
     (folder / "site").mkdir()
     (folder / "site/explorer.html").write_text(page(pad), encoding="utf-8")
     driven = folder / "driven.html"

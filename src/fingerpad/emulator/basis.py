@@ -127,6 +127,19 @@ def cubic_weights(grid: np.ndarray, at: np.ndarray) -> np.ndarray:
     return weights
 
 
+def spread(half: np.ndarray, turned: bool) -> np.ndarray:
+    """What the mean pressure of a contact is the force over: its width, or the area of a disc.
+
+    Parameters
+    ----------
+    half
+        m, half the width of the contact.
+    turned
+        The contact is of a body of revolution.
+    """
+    return np.pi * half**2 if turned else 2 * half
+
+
 def held(time: np.ndarray) -> np.ndarray:
     """The scale in which a hold is interpolated. time: s since it began."""
     return np.log1p(np.asarray(time, float) / SOONEST)

@@ -31,7 +31,7 @@ def emulate_folder(options: Any) -> None:
 
 
 def _tell(added: int, error: float) -> None:
-    print(f"{added} scenes added: 95 % of the scenes left out are within {100 * error:.3g} %")
+    print(f"{added} scenes added: 95 % of the sweep's scenes are within {100 * error:.3g} %")
 
 
 def _show(emulator: Emulator, out: Path) -> None:

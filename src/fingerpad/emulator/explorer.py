@@ -50,7 +50,8 @@ def page(emulator: Emulator) -> str:
     Parameters
     ----------
     emulator
-        Of cylinders that are pressed at a rate and held; curvature, force and rate are knobs.
+        Of cylinders or spheres that are pressed at a rate and held; curvature, force and rate are
+        knobs.
 
     Raises
     ------
@@ -62,8 +63,8 @@ def page(emulator: Emulator) -> str:
     if missing or not len(emulator.moments.hold):
         raise SceneError(
             f"the emulator: {missing[0] if missing else 'motion[1].hold'} is no knob of it; "
-            "allowed: of a cylinder that is pressed at a rate and held, with curvature, force and "
-            "rate as knobs"
+            "allowed: of a cylinder or sphere that is pressed at a rate and held, with curvature, "
+            "force and rate as knobs"
         )
     parts = {name: (_HERE / f"page.{name}").read_text(encoding="utf-8") for name in ("css", "js")}
     parts["model"] = json.dumps(_model(emulator), separators=(",", ":")).replace("</", "<\\/")
@@ -104,6 +105,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "on_border": ON_BORDER,
         "places": _numbers(PLACES),
         "grids": {name: _numbers(grid) for name, grid in emulator.grids.items()},
+        "turned": emulator.turned,
         "contact_length": base["specimen"]["contact_length"],
         "base": base,
         "groups": groups,

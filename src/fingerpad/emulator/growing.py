@@ -66,7 +66,8 @@ def grow(
         belong to it from then on.
     tolerance
         Relative error of depth, width and pressures at the last moment, within which 95 % of the
-        scenes must be that are left out one at a time.
+        sweep's own scenes must be, left out one at a time. Those that are added lie where it is
+        hard, and say nothing of the others.
     scenes, seconds
         The budget: no more scenes are added, and none is begun later.
     cores
@@ -95,7 +96,7 @@ def grow(
         swept = replace(swept, knobs=warped(swept.knobs, swept.samples))
         scales, at = lengths(swept), scaled(swept.knobs, swept.samples.points)
         off = _off(swept, terms_of(at, at, scales))
-        error = float(np.quantile(off, COVERED))
+        error = float(np.quantile(off[: swept.drawn], COVERED))
         if progress:
             progress(added, error)
         wanted = min(BATCH, scenes - added)

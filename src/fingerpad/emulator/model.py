@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, cubic_weights, held, kernel
+from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, spread
 from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up, scaled
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
@@ -226,6 +226,11 @@ class Emulator:
         """Names of what is emulated; the parts of ``energy_root`` count once."""
         return (*(name for name in self.groups if name not in self.pieces), ENERGY)
 
+    @property
+    def turned(self) -> bool:
+        """Whether it is of bodies of revolution."""
+        return self.base.get("kinematics") == "axisymmetric"
+
     @cached_property
     def pieces(self) -> dict[str, tuple[int, int]]:
         """Name of each part of ``energy_root`` -> its depth, counted from 0, and its layer."""
@@ -310,7 +315,8 @@ class Emulator:
         force = keys.get("motion[0].press_to_force", self.base["motion"][0]["press_to_force"])
         load = share * force * asked.modulus / self.base["specimen"]["contact_length"]
         depth, half = found["indentation_depth"], found["contact_width"] / 2
-        arc, grids = np.linspace(-1, 1, NODES) * self.grids["arc"][-1], self.grids
+        grids, turned = self.grids, self.turned
+        arc = np.linspace(0 if turned else -1, 1, NODES) * grids["arc"][-1]
         near = np.abs(arc)
         skin = {n: np.interp(near, grids["arc"], grids[n]) for n in ("skin_x", "skin_y")}
         skin["skin_x"] *= np.sign(arc)
@@ -333,7 +339,7 @@ class Emulator:
             data[name] = ("time", "skin_node"), moved * (np.sign(arc) if axis == "x" else 1.0)
         place = np.abs(skin["skin_x"] + data["skin_displacement_x"][1]) / half[:, None]
         place = np.where(skin["skin_y"] > 0, place, 2.0)
-        mean = load / (2 * half)
+        mean = load / spread(half, turned)
         for name, rows in (("", found["pressure_shape"]), ("_error", bands["pressure_shape"])):
             shown = [np.interp(s, PLACES, r, right=0.0) for s, r in zip(place, rows, strict=True)]
             pressure = np.maximum(shown, 0.0) * mean[:, None]
@@ -396,6 +402,8 @@ class Emulator:
         for name, (dims, values) in data.items():
             rest = np.concatenate([np.zeros((1, *values.shape[1:]), values.dtype), values])
             unit = UNITS.get(name.removesuffix("_error"), "1")
+            if name == "force" and self.turned:
+                unit = "N"
             started[name] = dims, rest, {"units": unit}
         offsets = self.grids["receptor_offset"][wanted]
         coordinates = {

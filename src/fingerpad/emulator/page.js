@@ -277,6 +277,7 @@ function start() {
   for (const [name, curvature] of model.surfaces) addSurface(name, curvature);
   readLink();
   document.getElementById("scenes").textContent = model.scenes;
+  document.getElementById("shape").textContent = model.base.stimulus.shape;
   document.getElementById("copy").addEventListener("click", copy);
   window.addEventListener("hashchange", () => { readLink(); draw(); });
   draw();
@@ -321,6 +322,7 @@ function sceneText() {
     words.slice(0, -1).forEach(word => { part = part[word] = part[word] || {}; });
     part[words[words.length - 1]] = knob.unit === "1" ? value : `${value} ${knob.unit}`;
   }
+  if (model.turned) scene.kinematics = "axisymmetric";
   scene.motion[1] = { hold: `${state.hold} s` };
   if (!(state.hold > 0)) scene.motion.pop();
   if (state.modulus !== 1) {
@@ -472,7 +474,8 @@ function drawSection(found) {
 }
 
 function drawPressure(found) {
-  const last = found.indentation_depth.length - 1, half = found.contact_width[last][0] / 2, mean = found.load / (2 * half);
+  const last = found.indentation_depth.length - 1, half = found.contact_width[last][0] / 2;
+  const mean = found.load / (model.turned ? Math.PI * half * half : 2 * half);
   const shapeOf = found.pressure_shape[last], width = found.pressure_shape_band;
   const side = sign => (v, k) => [v * half * 1e3, Math.max(shapeOf[k] + sign * width[k], 0) * mean / 1e3];
   const both = list => [...list.slice(1).reverse().map(([x, y]) => [-x, y]), ...list];

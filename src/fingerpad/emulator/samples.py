@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import SOONEST, cubic_weights, held
+from fingerpad.emulator.basis import SOONEST, cubic_weights, held, spread
 from fingerpad.emulator.model import ENERGY, PLACES, SCALARS, Moments
 from fingerpad.emulator.question import Knob
 from fingerpad.results import read_history
@@ -66,7 +66,9 @@ class Swept:
     knobs, base, moments, grids
         See `Emulator`.
     samples : Samples
-        Of the scenes that can be emulated.
+        Of the scenes that can be emulated, the sweep's own first.
+    drawn : int
+        How many are the sweep's own.
     lost : int
         How many others could be simulated.
     """
@@ -78,6 +80,7 @@ class Swept:
     moments: Moments
     grids: Mapping[str, np.ndarray]
     samples: Samples
+    drawn: int
     lost: int
 
     @classmethod
@@ -89,7 +92,8 @@ class Swept:
         histories = list(_histories(folder, design, len(knobs)))
         grids = _grids(histories[0][1])
         samples, lost = _samples(histories, moments, grids)
-        found = cls(folder, design["about"], knobs, base, moments, grids, samples, lost)
+        about, drawn = design["about"], len(samples.points)
+        found = cls(folder, about, knobs, base, moments, grids, samples, drawn, lost)
         for more in sorted((folder / GROWN).glob("*/design.json")):
             found = found.with_more(more.parent)
         return found
@@ -124,7 +128,8 @@ def _knobs(folder: Path, design: Mapping[str, Any]) -> list[Knob]:
     over, knobs = json.loads(design["about"]["sweep"])["over"], []
     for p in design["parameters"]:
         if not p["unit"]:
-            raise SceneError(f"{folder}: over.{p['key']}: is not a number; allowed: numbers")
+            allowed = "numbers; make a sweep and an emulator for each of its values"
+            raise SceneError(f"{folder}: over.{p['key']}: is not a number; allowed: {allowed}")
         per = 1.0 if p["unit"] == "1" else _si(p["unit"])
         axis = over.get(p["key"], {})
         ends = axis.get("range") or axis.get("uniform")
@@ -252,10 +257,10 @@ def _at_moments(history: xr.Dataset, moments: Moments) -> tuple[np.ndarray, np.n
 def _pressure_shapes(history: xr.Dataset, load: np.ndarray) -> np.ndarray:
     """Pressure (time, places) over the mean pressure, at shares of the contact's half width."""
     place = history.skin_x.values + history.skin_displacement_x.values
-    half = history.contact_width.values / 2
+    half, turned = history.contact_width.values / 2, "contact_radius" in history
     upper = (history.skin_y.values > 0) & (history.skin_arc.values >= 0)
     found = np.zeros((len(load), len(PLACES)))
     for k in np.flatnonzero((half > 0) & (load > 0)):
         x, p = place[k, upper] / half[k], history.contact_pressure.values[k, upper]
-        found[k] = np.interp(PLACES, x, p) * 2 * half[k] / load[k]
+        found[k] = np.interp(PLACES, x, p) * spread(half[k], turned) / load[k]
     return found
