@@ -7,15 +7,16 @@ from __future__ import annotations
 from itertools import product
 
 import numpy as np
-from numba import njit
 from numpy.polynomial import legendre
-
-from fingerpad.compiled import JIT
 
 BENT = 10.0
 """How steep the bent scale is at the low end, over its steepness at the high end, less 1."""
 SOONEST = 0.05
 """s; holds are interpolated in log(1 + time / SOONEST)."""
+
+
+_AT_ONCE = 128
+"""Points at a time, so that what is between stays in the cache."""
 
 
 def _bent(value, low, high):
@@ -59,8 +60,7 @@ def basis(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
     return found
 
 
-@njit(**JIT, fastmath=True, nogil=True)
-def kernel(points, centres, scales):
+def kernel(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.ndarray:
     """Matern's covariance (n, m) of smoothness 5/2 (Rasmussen and Williams 2006, eq 4.17).
 
     Parameters
@@ -72,24 +72,23 @@ def kernel(points, centres, scales):
     scales
         (knobs,) lengths over which it falls.
     """
-    n, many, knobs = len(points), len(centres), len(scales)
-    found, square = np.empty((n, many)), np.empty(many)
-    across = np.ascontiguousarray(centres.T)
-    for i in range(n):
-        square[:] = 0.0
-        for a in range(knobs):
-            for j in range(many):
-                step = (points[i, a] - across[a, j]) / scales[a]
-                square[j] += 5 * step * step
-        for j in range(many):
-            far = np.sqrt(square[j])
-            # exp(-far) as the 64th power of a series, which compilers do for several at once
-            t, falls = -min(far, 38.0) / 64, 1.0
-            for k in range(12, 0, -1):
-                falls = 1.0 + falls * t / k
-            for _ in range(6):
-                falls *= falls
-            found[i, j] = (1 + far + square[j] / 3) * falls
+    found = np.empty((len(points), len(centres)))
+    ends = points / scales * np.sqrt(5), centres / scales * np.sqrt(5)
+    sizes = tuple((end**2).sum(axis=1) for end in ends)
+    for start in range(0, len(points), _AT_ONCE):
+        some = slice(start, start + _AT_ONCE)
+        far = found[some]
+        np.matmul(ends[0][some], -2 * ends[1].T, out=far)
+        far += sizes[0][some, None]
+        far += sizes[1]
+        np.maximum(far, 0, out=far)
+        falls = far / 3
+        np.sqrt(far, out=far)
+        falls += far
+        falls += 1
+        np.negative(far, out=far)
+        np.exp(far, out=far)
+        far *= falls
     return found
 
 

@@ -42,7 +42,7 @@ NODES = 161
 ON_BORDER = 1e-8
 """m; a receptor this near a border belongs to the layer below, as the solver has it."""
 FORMAT = 3
-_CHUNK = 2_000
+_CHUNK = 500
 _PARTS = ("mean", "rows", "coefficients", "band", "scales")
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import make_lsq_spline
 
 from fingerpad.stimuli.columns import columns_with_units
 from fingerpad.tables import TableError, read_table
@@ -82,6 +81,8 @@ def read_course(path: str | Path) -> Course:
         )
     # between the corners, the pieces that fit all samples best
     knots = np.pad(times[corners], 1, mode="edge")
+    from scipy.interpolate import make_lsq_spline  # a tenth of a second
+
     fitted = np.maximum(make_lsq_spline(times, values, knots, k=1).c, 0.0)
     return Course(tuple(times[corners].tolist()), tuple(fitted.tolist()), kept)
 

@@ -18,7 +18,6 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, field_serializer, model_validator
 from pydantic.json_schema import SkipJsonSchema
-from scipy.optimize import brentq
 
 from fingerpad.documents import Problem, Strict, nearest
 from fingerpad.fields import Length, OneOf, Time, listed, quantity
@@ -543,6 +542,8 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
         return np.full(count, duration / count)
     most = (duration / first) ** (1 / (count - 1))  # or the last step alone were longer
     high = most * (1 + 1e-12) if many else 1 + most
+    from scipy.optimize import brentq  # a third of a second
+
     ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())

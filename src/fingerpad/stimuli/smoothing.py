@@ -3,7 +3,6 @@ the metrologist's filter.
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 #: Turning to and fro (rad) within half an edge, above which a profile is rougher than the mesh can
 #: feel.
@@ -70,6 +69,8 @@ def smoothed(x: np.ndarray, y: np.ndarray, cutoff: float) -> tuple[np.ndarray, n
     heights = _averages(x, y, even)
 
     def weighed(values):
+        from scipy.ndimage import gaussian_filter1d  # most scenes need none
+
         return gaussian_filter1d(values, 1 / spacing, mode="constant", truncate=5.0)
 
     zeroth, first, second = weighed(np.ones(count)), weighed(at), weighed(at**2)
