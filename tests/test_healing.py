@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cysyk1999.studies.common.meshes import corners_only, split
-from fingerpad import NonConvergence, load_scene, plan, simulate, simulation, summary
+from fingerpad import NonConvergence, healing, load_scene, plan, simulate, simulation, summary
 from fingerpad.cli import main
 from fingerpad.healing import Try, remedies
 from fingerpad.mechanics import stepping
@@ -160,11 +160,31 @@ def test_nothing_is_tried_beyond_the_budget(doubtful):
     assert "relaxed in vain" in found.attrs["notes"]
 
 
+def test_all_further_runs_together_take_no_more_than_the_budget(monkeypatch):
+    """Mutant: with what is left not counted, each of them takes as much."""
+    taken, nodes = [], []
+
+    def labours(scene, how, *_):
+        most = how.relaxed.most_factorisations
+        taken.append(min(most or 40, 60) * how.nodes**1.5)
+        nodes.append(how.nodes)
+        cost = json.dumps({"factorisations": min(most or 40, 60)})
+        return solved.assign_attrs(cost=cost)
+
+    solved = solve(PRESS | {"accuracy": "draft"})
+    monkeypatch.setattr(healing, "solve", labours)
+    found = simulate(PRESS | {"on_trouble": {"budget": 3}})
+    tried = json.loads(found.attrs["relaxed"])["tried"]
+    first, *further = taken
+    assert len(further) >= 2 and any("too much" in each for each in tried)
+    assert sum(further) <= 3 * first
+
+
 # -- what may be relaxed ---
 
 
 def test_what_the_message_says_is_relaxed_the_cheapest_first():
-    assert kinds(PRESS, **MORE) == ["steps", "mesh", "mesh", "steps"]
+    assert kinds(PRESS, **MORE) == ["steps", "mesh", "steps", "mesh"]
     assert kinds(EDGE) == ["mesh", "mesh", "stimulus"]
     assert "linear solver" in kinds(PRESS, why="the matrix is singular", advice="")
 

@@ -1,5 +1,5 @@
 """A run that is in trouble, run again with less asked of its method: one thing after the other, the
-cheapest first. A further run costs at most a budget; of one that only labours, all together do.
+cheapest first, until it runs well or a budget of work is spent.
 """
 
 from __future__ import annotations
@@ -30,11 +30,12 @@ MOST_CUTS = 2
 """Matrices factorised, mean of the states, and cuts of steps above which a run labours."""
 FINER = (1.4, 1.9)
 """By how much shorter the edges of a built mesh are made: nearly twice and four times the nodes."""
-ITERATIONS = 25
-LEAST_ITERATIONS = 400
-"""Newton iterations of a planned state, and of a whole run, after which a relaxed run is given up:
-some eight times what an easy one takes.
-"""
+EASY_FACTORISATIONS = 2.0
+"""Matrices factorised for a state of an easy run, which a relaxed run is planned to be."""
+LEAST_MATRICES = 100.0
+"""Matrices that a run which broke off counts for at least: it may have done so at once."""
+POWER = 1.5
+"""Of the nodes, with which the cost of a matrix grows (George 1973)."""
 TIP = 2.0
 """Edges of the skin that the radius of a relaxed edge or tip is long."""
 FINE, LABOURS, DOUBTS, BROKE_OFF = range(4)
@@ -58,6 +59,13 @@ class Try:
     rank: int
     history: Any  # xr.Dataset; None where no step had converged
     problem: NonConvergence | None = None
+
+    @property
+    def factorisations(self) -> int:
+        """Matrices that it factorised."""
+        if self.problem is not None:
+            return self.problem.factorisations
+        return json.loads(self.history.attrs["cost"])["factorisations"]
 
     @property
     def advice(self) -> str:
@@ -175,16 +183,14 @@ def _healed(
 ) -> tuple[Try, list[str]]:
     """The best of a run in trouble and of the relaxed ones; what was tried, in words."""
     tried: list[str] = []
-    best, left = first, how.budget * _work(first.plan)
+    best, left = first, how.budget * _work(first)
     for remedy in remedies(first, how, mesh):
-        if _work(remedy.plan) > left:
+        if _easy(remedy.plan) > left / 2:  # the other half is for what comes after it
             tried.append(f"{remedy.said} (not tried: it would cost too much)")
             continue
         try:
             check_memory(remedy.scene, remedy.plan.nodes, remedy.plan.outputs, RULES)
-            found = run(remedy.scene, _saying(remedy))
-            if first.rank == LABOURS:  # it is right already, and not worth many runs
-                left -= _work(remedy.plan) * _reached(found)
+            found = run(remedy.scene, _saying(remedy, left / 2))
         except KeyboardInterrupt as stop:
             if best.problem is None:
                 vars(stop)["dataset"] = best.history  # the run before is whole
@@ -192,6 +198,7 @@ def _healed(
         except (MeshError, OutlineError, PlanError, ReceptorError) as reason:
             tried.append(f"{remedy.said} (not tried: {reason})")
             continue
+        left -= found.plan.nodes**POWER * found.factorisations
         tried.append(remedy.said)
         if found.rank < best.rank:
             best = found
@@ -200,11 +207,11 @@ def _healed(
     return best, tried
 
 
-def _saying(remedy: Remedy) -> Plan:
-    """The plan of a remedy, which says what is relaxed and does not labour for ever."""
-    relaxed, most = remedy.plan.relaxed, max(ITERATIONS * remedy.plan.steps, LEAST_ITERATIONS)
+def _saying(remedy: Remedy, share: float) -> Plan:
+    """The plan of a remedy, which says what is relaxed and takes no more than its share."""
+    relaxed, most = remedy.plan.relaxed, max(int(share / remedy.plan.nodes**POWER), 1)
     said = (*relaxed.said, remedy.said)
-    return replace(remedy.plan, relaxed=replace(relaxed, said=said, most_iterations=most))
+    return replace(remedy.plan, relaxed=replace(relaxed, said=said, most_factorisations=most))
 
 
 def _rank(history: xr.Dataset) -> int:
@@ -221,16 +228,17 @@ def _factors(history: xr.Dataset) -> float:
     return factorisations / max(states_found(history), 1)
 
 
-def _reached(found: Try) -> float:
-    """How much of its steps a run has solved."""
-    if found.problem is None:
-        return 1.0
-    return 0.0 if found.history is None else min(states_found(found.history) / found.plan.steps, 1)
+def _easy(plan: Plan) -> float:
+    """What an easy run of a plan takes, by its nodes and matrices: seconds would differ from
+    machine to machine.
+    """
+    return EASY_FACTORISATIONS * plan.nodes**POWER * plan.steps
 
 
-def _work(plan: Plan) -> float:
-    """What a plan costs, in nodes times steps: seconds would differ from machine to machine."""
-    return float(plan.nodes * plan.steps)
+def _work(first: Try) -> float:
+    """What a run in trouble took, or, if that is more, what one that labours would take."""
+    least = max(MOST_FACTORISATIONS * first.plan.steps, LEAST_MATRICES * (first.rank == BROKE_OFF))
+    return first.plan.nodes**POWER * max(first.factorisations, least)
 
 
 # --- what can be relaxed, the cheapest first ------------------------------------------------------
@@ -248,7 +256,7 @@ def remedies(first: Try, how: Relaxing, mesh: PadMesh | None = None) -> Iterator
         costing += _meshes(scene, plan, everything)
     if "round-off" in first.advice or "singular" in first.why:
         costing += _solver(scene, plan)
-    yield from sorted(costing, key=lambda remedy: round(_work(remedy.plan) / _work(plan)))
+    yield from sorted(costing, key=lambda remedy: round(_easy(remedy.plan) / _easy(plan)))
     if first.rank == BROKE_OFF or "fillet" in first.advice:
         yield from _blunter(scene, plan, everything)
 

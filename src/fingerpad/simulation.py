@@ -199,7 +199,7 @@ class Simulation:
             observers,
             friction=self.parts.friction,
             patience=PATIENCE if scene.relaxing else 0,
-            most=plan.relaxed.most_iterations,
+            most=plan.relaxed.most_factorisations,
         )
         self._require_room()
 
@@ -326,7 +326,8 @@ class Simulation:
         try:
             records = self.stepper.run(self.steps(), after, between)
         except (NonConvergence, KeyboardInterrupt) as stop:
-            vars(stop).update(dataset=None, hard=hard_in(self.scene))
+            known = {"hard": hard_in(self.scene), "factorisations": self.stepper.factorisations}
+            vars(stop).update(dataset=None, **known)
             if done:
                 whole = self._history(done, states[: len(done) + 1], snapshots, False)
                 vars(stop)["dataset"] = whole

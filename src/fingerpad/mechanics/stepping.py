@@ -78,12 +78,14 @@ class NonConvergence(RuntimeError):
         Of every converged scheduled step.
     halvings : int
         How often the step was cut; 0 where more attempts at it are of no use.
+    factorisations : int
+        Matrices factorised in all, if known.
     tried : tuple of str
         What was relaxed in vain.
     """
 
     hard: tuple[str, ...] = ()
-    halvings = 0
+    halvings = factorisations = 0
     tried: tuple[str, ...] = ()
 
     def __init__(self, time: float, reason: str, advice: str, where: str = ""):
@@ -246,7 +248,7 @@ class QuasiStatic:
     patience
         How often a step that failed is gone on with from its last good state, in small shares.
     most
-        Newton iterations after which the run is given up; 0: never.
+        Matrices factorised after which the run is given up; 0: never.
     """
 
     def __init__(
@@ -261,7 +263,7 @@ class QuasiStatic:
         patience=0,
         most=0,
     ):
-        self._most, self._taken = most, 0
+        self._most = most
         self.patience = patience
         self.resumed: list[float] = []  # times (s) at which steps were gone on with
         self._share = 1.0  # largest of a step that is tried at once
@@ -485,9 +487,8 @@ class QuasiStatic:
         while iteration < limit:
             iteration += 1
             self._spent += 1
-            self._taken += 1
-            if 0 < self._most < self._taken:
-                reason = f"{self._most} Newton iterations did not suffice"
+            if 0 < self._most <= self.factorisations:
+                reason = f"{self._most} matrices did not suffice"
                 raise NonConvergence(self.time, reason, "a larger on_trouble.budget")
             if self._softened:
                 limit = settings.max_iterations + SNAP_ITERATIONS

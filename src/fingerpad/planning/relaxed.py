@@ -17,8 +17,8 @@ class Relaxed:
         How often the edges of an external mesh were halved, inside its geometry.
     precise
         Whether matrices are factorised in double precision from the start.
-    most_iterations
-        Newton iterations after which the run is given up; 0: never.
+    most_factorisations
+        Matrices factorised after which the run is given up; 0: never.
     said
         What was relaxed, in words.
     """
@@ -26,5 +26,5 @@ class Relaxed:
     pieces: int = 1
     halvings: int = 0
     precise: bool = False
-    most_iterations: int = 0
+    most_factorisations: int = 0
     said: tuple[str, ...] = ()

@@ -23,7 +23,7 @@ class Relaxing(Strict):
     edges, element and the radius of its tip (`everything`); never its loads or its pad.
     """
     budget: _Budget = BUDGET
-    """What all further runs may cost together, over the planned cost of the first."""
+    """What all further runs may cost together, over what the first took."""
 
 
 def _kind_of(value: Any) -> Any:
