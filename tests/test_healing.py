@@ -38,7 +38,7 @@ def starve(monkeypatch, iterations, halvings=0):
 def in_trouble(document, why="an element would turn inside out", advice=stepping.FOLDED):
     """A run that broke off, without running it."""
     scene = load_scene(document)
-    return Try(scene, plan(scene), 3, None, NonConvergence(0.0, why, advice))
+    return Try(scene, plan(scene), None, NonConvergence(0.0, why, advice))
 
 
 def kinds(document, **problem):

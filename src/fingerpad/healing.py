@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -52,13 +53,27 @@ _TOLD = 5e-3
 
 @dataclass(frozen=True)
 class Try:
-    """One run: how it was asked for and how it ended, 0 (well) to 3 (broke off)."""
+    """One run: how it was asked for and how it ended.
+
+    Attributes
+    ----------
+    scene, plan
+        What was run.
+    history : xarray.Dataset or None
+        Up to the last converged state; None where no step had converged.
+    problem : NonConvergence or None
+        What it broke off with.
+    """
 
     scene: Scene
     plan: Plan
-    rank: int
-    history: Any  # xr.Dataset; None where no step had converged
+    history: Any
     problem: NonConvergence | None = None
+
+    @property
+    def rank(self) -> int:
+        """How it went: 0 (well) to 3 (broke off)."""
+        return BROKE_OFF if self.problem is not None else _rank(self.history)
 
     @property
     def factorisations(self) -> int:
@@ -159,26 +174,59 @@ def simulate(
     [0.0, 0.196]
     """
     scene = load_scene(scene)
+    first = attempt(scene, plan or planned(scene), mesh, progress, fields)
+    best = healed(first, mesh, progress, fields)
+    if best.problem is not None:
+        raise best.problem
+    return best.history
 
-    def run(scene: Scene, how: Plan) -> Try:
-        try:
-            history = solve(scene, how, mesh, progress, fields)
-        except NonConvergence as problem:
-            return Try(scene, how, BROKE_OFF, getattr(problem, "dataset", None), problem)
-        return Try(scene, how, _rank(history), history)
 
-    first = run(scene, plan or planned(scene))
-    how, best = scene.relaxing, first
-    tried: list[str] = []
-    if how is not None and first.rank > FINE:
-        best, tried = _healed(first, how, mesh, run)
+def attempt(
+    scene: Scene,
+    plan: Plan,
+    mesh: PadMesh | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+    fields: bool = False,
+) -> Try:
+    """One run as it is planned, also if it breaks off; arguments as of :func:`simulate`."""
+    try:
+        return Try(scene, plan, solve(scene, plan, mesh, progress, fields))
+    except NonConvergence as problem:
+        return Try(scene, plan, getattr(problem, "dataset", None), problem)
+
+
+def healed(
+    first: Try,
+    mesh: PadMesh | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+    fields: bool = False,
+) -> Try:
+    """The best of a run and, if it is in trouble, of relaxed ones.
+
+    Parameters
+    ----------
+    first : Try
+        The run as planned.
+    mesh, progress, fields
+        As of :func:`simulate`.
+
+    Returns
+    -------
+    Try
+        Its history, or its problem, says what was tried.
+    """
+    how = first.scene.relaxing
+    if how is None or first.rank == FINE:
+        return first
+    run = partial(attempt, mesh=mesh, progress=progress, fields=fields)
+    best, tried = _best(first, how, mesh, run)
     if best.problem is not None:
         best.problem.tried = tuple(tried)
-        raise best.problem
-    return _told(first, best, tried)
+        return best
+    return replace(best, history=_told(first, best, tried))
 
 
-def _healed(
+def _best(
     first: Try, how: Relaxing, mesh: PadMesh | None, run: Callable[[Scene, Plan], Try]
 ) -> tuple[Try, list[str]]:
     """The best of a run in trouble and of the relaxed ones; what was tried, in words."""
@@ -272,10 +320,10 @@ def _steps(scene: Scene, plan: Plan, everything: bool) -> Iterator[Remedy]:
     if scene.by_hand.steps and not everything:
         return
     for pieces, said in ((2, "steps: half as long"), (4, "steps: a quarter as long")):
-        yield Remedy(said, scene, _cut(plan, pieces))
+        yield Remedy(said, scene, cut(plan, pieces))
 
 
-def _cut(plan: Plan, pieces: int) -> Plan:
+def cut(plan: Plan, pieces: int) -> Plan:
     """A plan with so many times the steps."""
     return replace(
         plan,

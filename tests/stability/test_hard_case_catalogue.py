@@ -21,7 +21,6 @@ from cysyk1999.studies.stability.run import (
     SILENT,
     STABLE,
     compared,
-    cured,
     healed,
     judged,
     run,
@@ -201,12 +200,6 @@ def test_what_is_beyond_the_method_leaves_the_last_state_and_a_cause(name, tmp_p
     assert float(saved.energy_balance_error[-1]) < 0.05
 
 
-def test_what_the_message_says_to_relax_makes_the_case_run():
-    """One of them: the study tries all that are not stable."""
-    name = "needle on a mesh too coarse"
-    assert cured(CATALOGUE[name], done(name)) == "mesh: planned for accuracy: thesis"
-
-
 def test_a_case_heals_and_is_then_judged_like_any_other():
     """A healed run that is beyond a limit is none; nor is one of a scene that forbids remedies."""
     (name,) = (name for name in CATALOGUE if name.startswith("54:"))
@@ -257,14 +250,14 @@ UNEVEN = '["pressure goes up and down from node to node"]'
     ("beyond", "notes", "error", "outcome"),
     [
         ({}, "[]", 0.1, STABLE),
-        ({"factorisations": 5}, "[]", 0.1, LABOURS),
+        ({"factorisations": 11}, "[]", 0.1, LABOURS),
         ({"cuts": 3, "effort": 9}, "[]", 0.1, LABOURS),
         ({"halving": np.inf}, "[]", 0.1, LABOURS),
         ({"halving": 0.2}, "[]", 0.1, SILENT),
         ({"det_f": 0.01}, "[]", 0.1, SILENT),
         ({"complementarity": 0.1}, "[]", 0.1, SILENT),
         ({"energy": 0.2}, "[]", 0.1, SILENT),
-        ({"energy": 0.2, "cuts": 1}, FOUND, 0.1, ADMITS),
+        ({"energy": 0.2, "cuts": 3}, FOUND, 0.1, ADMITS),
         ({"energy": 0.2, "halving": 0.2}, FOUND, 0.1, SILENT),
         ({"halving": 0.2}, "[]", 0.6, ADMITS),
         ({"solver": 0.01}, "[]", 0.1, SILENT),

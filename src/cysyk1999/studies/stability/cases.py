@@ -20,6 +20,7 @@ import yaml
 from cysyk1999.studies.common.documents import CONFIG, FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import corners_only, distorted, split
 from cysyk1999.studies.stability.combining import drawn, listed
+from fingerpad.healing import MOST_CUTS, MOST_FACTORISATIONS
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for, write_pad
@@ -50,12 +51,12 @@ def limit(value: float, text: str) -> Any:
 class Limits:
     """The worst that a stable run may measure (:mod:`cysyk1999.studies.stability.invariants`).
 
-    The limit of the other solver is that of a run that is factored in single precision, which ends
-    where less than its tolerance is left.
+    Above the first two a user's run says that it labours. The limit of the other solver is that of
+    a run that is factored in single precision, which ends where less than its tolerance is left.
     """
 
-    cuts: float = limit(0, "at most {:g} cuts")
-    factorisations: float = limit(4, "at most {:g} factorisations a step")
+    cuts: float = limit(MOST_CUTS, "at most {:g} cuts")
+    factorisations: float = limit(MOST_FACTORISATIONS, "at most {:g} factorisations a step")
     energy: float = limit(0.03, "energy balanced within {:.0%}")
     complementarity: float = limit(1e-3, "complementarity within {:g}")
     det_f: float = limit(0.1, "det F above {:g}")

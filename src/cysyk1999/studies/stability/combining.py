@@ -131,11 +131,9 @@ def _limits(every: Mapping[str, str]) -> dict[str, float]:
     """
     stimulus, limits = every["stimulus"], {}
     if every["time"] == "one step" or every["then"] == "step and repeat":
-        limits = {"cuts": 6.0, "factorisations": 16.0, "energy": np.inf}
+        limits = {"energy": np.inf}
     elif every["time"] == "steady":
-        limits = {"factorisations": 8.0, "energy": 0.35}
-    elif stimulus not in SMOOTH:
-        limits = {"factorisations": 8.0}
+        limits = {"energy": 0.35}
     even = 0.15 if stimulus in SMOOTH else 0.3 if stimulus in FINE else np.inf
     return limits | {"checkerboard": np.inf if every["pad"] == "outer ridges" else even}
 

@@ -123,15 +123,13 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
         "healed": "what was relaxed",
         "message": "said",
         "saved": "last state saved",
-        "relaxed": "stable when relaxed",
     }
     for name, column in texts.items():
         out[column] = default.get(name, pd.Series("", default.index)).astype(object).fillna("")
     said = ": " + out["said"].where(out["said"] != "")
-    cure = "; stable with " + out["stable when relaxed"].where(out["stable when relaxed"] != "")
     mended = out["with remedies"] == "healed"
     healed = ("; healed: " + out["what was relaxed"]).where(mended, "")
-    out["how it ended"] = out["outcome"] + said.fillna("") + healed + cure.fillna("")
+    out["how it ended"] = out["outcome"] + said.fillna("") + healed
     out.insert(0, "case", out.index)
     out.insert(0, "no.", default["number"])
     shown = ["no.", "case", "what makes it hard", "how it ended", "nearest to its limit"]
