@@ -3,6 +3,7 @@ collected dataset.
 """
 
 import errno
+import itertools
 import json
 import math
 import os
@@ -15,7 +16,7 @@ import xarray as xr
 from jsonschema import Draft202012Validator
 from scipy import stats
 
-from faults import files, in_child
+from faults import ERRORS, Faults, files, in_child
 from fingerpad import simulate
 from fingerpad.cli import main
 from fingerpad.documents import SceneError, read_yaml
@@ -373,6 +374,37 @@ def test_a_scene_that_has_killed_two_processes_is_not_tried_again(tmp_path, monk
         "",
     ]
     assert {file.name for file in records.parent.iterdir()} == {"one.jsonl"}
+
+
+def test_any_call_of_a_batch_may_fail_or_be_its_last(tmp_path, monkeypatch):
+    """With a failing scene, and a clock that jumps: the same records come of the next run."""
+    pretend(monkeypatch, {200: NonConvergence(1.0, "step 3 did not settle", "more")})
+    jumps = itertools.cycle([0.0, 1e9, -1e9, 5.0])
+    monkeypatch.setattr(batch.time, "perf_counter", lambda: next(jumps))
+
+    def without_time(records):
+        return [{**record, "wall_s": 0} for record in read_records(records)]
+
+    def ended(folder, at=None, how=None):
+        folder.mkdir()
+        todo, records = batch_in(folder)
+        fault = Faults(records.parent, at, how)
+
+        def run():
+            with fault:
+                batch.run_batch(todo, records)
+            return fault.calls
+
+        calls = in_child(run)
+        batch.run_batch(todo, records)
+        return calls, without_time(records), {file.name for file in records.parent.iterdir()}
+
+    calls, expected, there = ended(tmp_path / "whole")
+    assert calls > 10 and len(expected) == 4 and there == {"one.jsonl"}
+    for at in range(calls):
+        for how in (ERRORS[at % len(ERRORS)], "interrupt", "kill"):
+            _, *found = ended(tmp_path / f"{at} {how}", at, how)
+            assert found == [expected, there], (at, how)
 
 
 def test_the_numbers_of_a_record_are_those_of_the_scene():
