@@ -286,20 +286,35 @@ def beliefs_missed():
     return "; ".join(texts).replace("_", " ") or "none"
 
 
+ENDS = {
+    "stable": "stable",
+    "healed": "stable after what the run relaxed by itself",
+    "labours": "right, with more than ten matrices a state or more than two halved steps",
+    "admits its error": "wrong, and the run says so",
+    "fails cleanly": "stops with its last state saved, the cause, and what to relax",
+    "not done": "not done in two minutes",
+    "unsound": "outside its limits without a warning",
+    "breaks off": "breaks off",
+}
+"""How hard cases end, in words."""
+
+
 @number
-def hard_cases_rest():
-    """How the others ended, as Markdown."""
-    words = {
-        "labours": "right, with more iterations or halved steps than a stable case may need",
-        "admits its error": "wrong, and the run says so",
-        "fails cleanly": "stops with its last state saved, the cause, and what to relax",
-        "not done": "not done in two minutes",
-        "unsound": "outside its limits without a warning",
-        "breaks off": "breaks off",
-    }
-    counts = table("stability")["outcome"].value_counts()
-    rows = [[text, str(counts.get(outcome, 0))] for outcome, text in words.items()]
-    return markdown_table("of the cases that are not stable | cases", rows)
+def hard_cases_ends():
+    """How the cases of the catalogue ended, as planned and with remedies, as Markdown."""
+    rows = table("stability")
+    planned, ended = rows["outcome"].value_counts(), rows["with remedies"].value_counts()
+    counts = [[text, str(planned.get(k, 0)), str(ended.get(k, 0))] for k, text in ENDS.items()]
+    return markdown_table("outcome | as planned | in the end", counts)
+
+
+@number
+def hard_cases_unseen():
+    """How cases ended that were drawn anew, by seed, as Markdown."""
+    counts = table("stability_unseen").groupby("seed")["outcome"].value_counts().unstack(0)
+    counts = counts.reindex(list(ENDS), fill_value=0).fillna(0).astype(int)
+    rows = [[text, *map(str, counts.loc[outcome])] for outcome, text in ENDS.items()]
+    return markdown_table(" | ".join(["outcome", *(f"seed {seed}" for seed in counts)]), rows)
 
 
 def swept(what: str, scenes: int, quantity: str) -> float:
