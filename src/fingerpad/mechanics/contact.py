@@ -497,8 +497,8 @@ def _negative_eigenvalues(matrix: np.ndarray) -> int:
 def _pivot(answer: Response, offset, load: float | None, active):
     """Forces (nr,), change of the depth and closed gaps (nr,) of the complementarity problem.
 
-    All infeasible points are exchanged at once; if that stops helping, one at a time, which always
-    ends. ``offset``: (nr,) m, gaps without forces. ``load``: N/m, of the depth's own equation; None
+    All infeasible points are exchanged at once; if that stops helping, one at a time, which ends if
+    the compliance is positive definite, and else may come back to where it was. ``offset``: (nr,) m, gaps without forces. ``load``: N/m, of the depth's own equation; None
     if the depth is given.
     """
     active, compliance, lever = active.copy(), answer.compliance, answer.lever
@@ -506,6 +506,7 @@ def _pivot(answer: Response, offset, load: float | None, active):
     if by_force and not active.any():
         active[np.argmin(offset)] = True
     best, patience = len(active) + 1, 8
+    seen: set[bytes] = set()
     scale = max(np.abs(offset).max(), 1e-12)
     for _ in range(40 + 4 * len(active)):
         on = np.flatnonzero(active)
@@ -528,9 +529,13 @@ def _pivot(answer: Response, offset, load: float | None, active):
             return np.maximum(f, 0), dd, active
         if count < best:
             best, patience = count, 8
+            seen.clear()
         elif patience:
             patience -= 1
+        elif active.tobytes() in seen:
+            break
         else:
+            seen.add(active.tobytes())
             wrong[np.flatnonzero(wrong)[:-1]] = False
         flipped = active ^ wrong
         if by_force and not flipped.any():
