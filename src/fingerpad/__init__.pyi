@@ -1,5 +1,6 @@
 from fingerpad.documents import SceneError as SceneError
 from fingerpad.emulator.fitting import emulate as emulate
+from fingerpad.emulator.growing import grow as grow
 from fingerpad.emulator.model import Emulator as Emulator
 from fingerpad.emulator.model import load_emulator as load_emulator
 from fingerpad.healing import simulate as simulate

@@ -86,6 +86,19 @@ def grow(
     ------
     SceneError
         The folder holds no sweep that can be emulated; one line.
+
+    Examples
+    --------
+    >>> import fingerpad, tempfile
+    >>> press = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}],
+    ...          "accuracy": "draft"}
+    >>> over = {"motion[0].press_to_force": {"range": ["10 gf", "40 gf"]}}
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = fingerpad.sweep(press, over, out=folder, design="sobol", samples=16,
+    ...                         histories=True)
+    ...     pad = fingerpad.grow(folder, 0.05, scenes=4)
+    >>> pad.about["grown"]["met"], pad.about["grown"]["added"]
+    (True, 0)
     """
     for name, value in (("tolerance", tolerance), ("scenes", scenes), ("seconds", seconds)):
         if not value > 0:
