@@ -614,11 +614,14 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
     )
     start = {"contact_width_mm": 0.0, "iterations": 0, "cutbacks": 0}
     with progress_bar(name, quiet, *columns, total=1.0, **start) as show:
+        if show is None:
+            yield None
+            return
 
         def after_step(state: dict[str, Any]) -> None:
             show(completed=state["time_s"], total=state["end_time_s"], **state)
 
-        yield show and after_step
+        yield after_step
 
 
 def _force_unit(path: Path) -> str:

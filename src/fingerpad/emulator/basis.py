@@ -139,6 +139,6 @@ def spread(half: np.ndarray, turned: bool) -> np.ndarray:
     return np.pi * half**2 if turned else 2 * half
 
 
-def held(time: np.ndarray) -> np.ndarray:
+def held(time: np.ndarray | float) -> np.ndarray:
     """The scale in which a hold is interpolated. time: s since it began."""
     return np.log1p(np.asarray(time, float) / SOONEST)

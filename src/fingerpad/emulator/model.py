@@ -439,7 +439,8 @@ class Emulator:
             "shapes": {name: list(group.shape) for name, group in self.groups.items()},
             "about": self.about,
         }
-        arrays = {"press": self.moments.press, "hold": self.moments.hold}
+        arrays: dict[str, Any] = {"about": np.array(json.dumps(about))}
+        arrays |= {"press": self.moments.press, "hold": self.moments.hold}
         arrays |= {"powers": self.powers, "centres": self.centres}
         arrays |= {f"grid_{name}": grid for name, grid in self.grids.items()}
         for name, group in self.groups.items():
@@ -448,7 +449,7 @@ class Emulator:
 
         def write(partial: Path) -> None:
             with partial.open("wb") as file:
-                np.savez_compressed(file, about=np.array(json.dumps(about)), **arrays)
+                np.savez_compressed(file, **arrays)
 
         write_atomically(path, write)
 

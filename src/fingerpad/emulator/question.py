@@ -140,7 +140,7 @@ def borders(base: Mapping[str, Any]) -> list[tuple[str, ...]]:
     return [*first, (skin,), (skin, below)]
 
 
-def looked_up(document: Mapping[str, Any], key: str) -> Any:
+def looked_up(document: Any, key: str) -> Any:
     """The value of a dotted key."""
     for word in path_of(key):
         document = document[word]

@@ -141,13 +141,15 @@ def _knobs(folder: Path, design: Mapping[str, Any]) -> list[Knob]:
 
 
 def _si(unit: str) -> float:
-    return parse_quantity(f"1 {unit}", dimension_of(unit))
+    return _number(f"1 {unit}", 1.0)
 
 
 def _number(value: Any, per: float) -> float:
-    if isinstance(value, str):
-        return parse_quantity(value, dimension_of(value.partition(" ")[2]))
-    return per * float(value)
+    if not isinstance(value, str):
+        return per * float(value)
+    dimension = dimension_of(value.partition(" ")[2])
+    assert dimension, value  # the sweep has read it
+    return parse_quantity(value, dimension)
 
 
 def _histories(folder: Path, design: Mapping[str, Any], knobs: int) -> Iterator[tuple]:
