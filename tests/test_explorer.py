@@ -4,14 +4,16 @@ import html
 import json
 import re
 import subprocess
+from types import SimpleNamespace
 
 import pytest
 import yaml
 
 import fingerpad
+from fingerpad.emulator import explorer
 from fingerpad.emulator.explorer import page
 from test_browser import BROWSER, PHONE, walk
-from test_emulator import OVER, SCENE, made_up
+from test_emulator import OVER, SCENE, made_up, truth
 
 pytestmark = pytest.mark.browser
 
@@ -21,6 +23,8 @@ const knobs = [...document.querySelectorAll("input[type=range]")];
 function look(what) {
   const answered = answer(state), last = answered.indentation_depth.length - 1;
   found.push({ what, scene: document.getElementById("scene").textContent, rows: rows(answered),
+    beyond: document.getElementById("beyond")?.textContent,
+    circles: [...document.querySelectorAll("#force circle")].map(c => +c.getAttribute("r")),
     shown: [...document.querySelectorAll("#numbers td:nth-child(2)")].map(cell => cell.textContent),
     impulses: impulses(answered.rate), outside: answered.outside.length,
     time: answered.time[last], error: answered.estimated_error,
@@ -41,7 +45,7 @@ for (const knob of knobs) {
 const began = performance.now();
 for (let k = 0; k < 20; k++) draw();
 const milliseconds = (performance.now() - began) / 20;
-for (const button of document.querySelectorAll("#surfaces button")) {
+for (const button of document.querySelectorAll("#surfaces button, #subjects button")) {
   button.click();
   look(button.textContent);
 }
@@ -58,6 +62,7 @@ document.body.append(result);
 </script></body>"""
 
 
+CURVES = {"stimulus.curvature": {"range": ["0.01 1/m", "1300 1/m"]}}
 SPHERE = {"kinematics": "axisymmetric", "stimulus": {"shape": "sphere", "curvature": "210 1/m"}}
 
 
@@ -69,7 +74,7 @@ def made(tmp_path_factory, request):
     folder = tmp_path_factory.mktemp("explorer")
     thickness = {"specimen.outline.epidermis_thickness": {"range": ["0.5 mm", "1.2 mm"]}}
     pad = fingerpad.emulate(
-        made_up(folder / "sweep", 128, over=OVER | thickness, base=SCENE | request.param)
+        made_up(folder / "sweep", 128, over=OVER | CURVES | thickness, base=SCENE | request.param)
     )
     (folder / "site").mkdir()
     (folder / "site/explorer.html").write_text(page(pad), encoding="utf-8")
@@ -114,6 +119,34 @@ def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
 def test_the_page_says_where_nothing_is_known(made):
     for look in made[2]["found"]:
         assert (look["shown"][0] == "\u2013") == bool(look["outside"])
+
+
+def test_measured_fingers_are_drawn_beside_the_force_under_a_plate(made):
+    """Four fingers of four points each; the one that is chosen is larger. Of spheres none."""
+    pad, _, result, _ = made
+    chosen = [look for look in result["found"] if look["what"].startswith("subject")]
+    assert len(chosen) == (0 if pad.turned else 4)
+    for look in chosen:
+        assert sorted(look["circles"]) == 12 * [3] + 4 * [5] and "leave" not in look["beyond"]
+    if not pad.turned:
+        assert "not flat, the hold is short" in result["found"][0]["beyond"]
+
+
+def test_the_factor_of_a_measured_finger_is_found_again(tmp_path, monkeypatch):
+    """Of a made-up finger 1.3 times as stiff as the made-up pad."""
+    pad = fingerpad.emulate(made_up(tmp_path / "flat", 96, over=OVER | CURVES, base=SCENE))
+    rate = pad.base["motion"][0]["rate"]
+
+    def point(force):
+        depth = truth(0.01, force, rate, 1e9)[0]
+        return SimpleNamespace(
+            subject="me", value=1.3 * force, source="made up", place=lambda *_: depth
+        )
+
+    rows = [point(force) for force in (0.06, 0.1, 0.2, 0.4)]
+    monkeypatch.setattr(explorer, "datasets", lambda names: {"force_plate": rows})
+    (me,) = explorer.measured_subjects(pad)
+    assert me["modulus"] == pytest.approx(1.3, rel=0.015) and len(me["points"]) == 4
 
 
 def test_every_picture_has_words_and_no_number_is_missing(made):

@@ -9,11 +9,11 @@ Five functions do the work:
 - ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`.
 - ``respond(history)``: impulse rates and impulses of its receptors.
 
-``emulate(folder)`` fits an emulator to a sweep, which answers a scene in milliseconds; ``grow`` adds
-scenes to the sweep until it is good enough, and ``load_emulator(file)`` reads one. ``read_history``
-and ``read_plan`` read what was written; ``write_history`` writes a history and ``summary`` sums it
-up. ``history.fingerpad`` is the accessor of a history. The errors to catch are here too. Each name
-is imported at its first use.
+``emulate(folder)`` fits an emulator to a sweep, which answers a scene in milliseconds; ``grow``
+adds scenes to the sweep until it is good enough, and ``load_emulator(file)`` reads one.
+``read_history`` and ``read_plan`` read what was written; ``write_history`` writes a history and
+``summary`` sums it up. ``history.fingerpad`` is the accessor of a history. The errors to catch are
+here too. Each name is imported at its first use.
 """
 
 from __future__ import annotations

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad.benchmark.rows import datasets
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import BENT, SOONEST
 from fingerpad.emulator.model import LOGARITHMIC, ON_BORDER, PLACES, STRESSES, Emulator
-from fingerpad.emulator.question import borders, looked_up
+from fingerpad.emulator.question import FLAT, borders, looked_up
 from fingerpad.receptors.laws import THESIS_RATE
 
 DIGITS = 9
@@ -41,6 +42,8 @@ SHOWN = {
     "specimen.outline.epidermis_thickness": "Thickness of the epidermis",
 }
 """What the page calls a knob; others have their key."""
+MODULUS = (0.5, 2.0)
+"""Least and largest factor of all moduli on the page."""
 _HERE = Path(__file__).parent
 
 
@@ -95,7 +98,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "knobs": [
             knob.record() | {"label": SHOWN.get(knob.key, knob.key)} for knob in emulator.knobs
         ],
-        "modulus": {"low": 0.5, "high": 2.0},
+        "modulus": {"low": MODULUS[0], "high": MODULUS[1]},
         "press": _numbers(emulator.moments.press),
         "hold": _numbers(emulator.moments.hold),
         "soonest": SOONEST,
@@ -113,6 +116,8 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "borders": borders(base),
         "thicknesses": {key: looked_up(base, key) for key in keys},
         "surfaces": list(SURFACES.items()),
+        "flat": FLAT,
+        "subjects": measured_subjects(emulator),
         "scenes": emulator.about["scenes"],
         "law": {
             "per_energy": law.per_energy,
@@ -122,6 +127,59 @@ def _model(emulator: Emulator) -> dict[str, Any]:
             "spontaneous": law.spontaneous,
         },
     }
+
+
+def measured_subjects(emulator: Emulator) -> list[dict[str, Any]]:
+    """Measured fingers under a flat plate, and the factor of all moduli that is nearest to each.
+
+    Parameters
+    ----------
+    emulator
+        Of cylinders, down to a flat plate; of others there are none.
+
+    Returns
+    -------
+    list of dict
+        ``subject``; ``points``, measured (force, depth) in N and m, at rest; ``modulus``, with
+        which the emulator's depths at the end of its longest hold are off by least (r.m.s. of
+        those that it answers); and ``source``.
+
+    Notes
+    -----
+    The force of the press is that of a pad of the sweep's moduli: m times as stiff a pad needs m
+    times the force for the same depth.
+    """
+    knobs = {knob.key: knob for knob in emulator.knobs}
+    curvature, force = (knobs[key] for key in NEEDED[:2])
+    if emulator.turned or curvature.low > FLAT:
+        return []
+    base = {key: looked_up(emulator.base, key) for key in knobs}
+    factors, found = np.geomspace(*MODULUS, 61), []
+    rows = datasets(["force_plate"])["force_plate"]
+    for subject in dict.fromkeys(row.subject for row in rows):
+        own = [row for row in rows if row.subject == subject]
+        points = np.array([(row.value, row.place("depth", "length")) for row in own])
+        forces = points[:, 0] / factors[:, None]
+        asked = np.array([[base[knob.key] for knob in emulator.knobs]] * forces.size)
+        keys = list(knobs)
+        asked[:, keys.index(curvature.key)] = curvature.low
+        asked[:, keys.index(force.key)] = forces.ravel()
+        depths = emulator.values(asked, ("indentation_depth",))["indentation_depth"][:, -1]
+        off = (depths.reshape(forces.shape) - points[:, 1]) ** 2
+        off[(forces < force.low) | (forces > force.high)] = np.nan
+        answered = np.isfinite(off).sum(axis=1)
+        if answered.max() < 2:
+            continue
+        misfit = np.where(answered == answered.max(), np.nansum(off, axis=1), np.inf)
+        found.append(
+            {
+                "subject": subject,
+                "points": points.tolist(),
+                "modulus": float(factors[np.argmin(misfit)]),
+                "source": own[0].source,
+            }
+        )
+    return found
 
 
 def _packed(array: np.ndarray) -> dict[str, Any]:

@@ -275,6 +275,8 @@ function start() {
     if (!(knob.key in wanted) && within(knob, usual)) state.values[knob.key] = usual;
   }
   for (const [name, curvature] of model.surfaces) addSurface(name, curvature);
+  for (const subject of model.subjects) addSubject(subject);
+  if (!model.subjects.length) for (const id of ["subjects", "measured"]) document.getElementById(id).remove();
   readLink();
   document.getElementById("scenes").textContent = model.scenes;
   document.getElementById("shape").textContent = model.base.stimulus.shape;
@@ -297,6 +299,23 @@ function addSurface(name, curvature) {
   document.getElementById("surfaces").append(button);
   controls.push({ show() { button.setAttribute("aria-pressed", state.values[CURVE] === value); } });
 }
+
+// A measured finger: a flat plate, held as long as it goes, and its factor of the moduli.
+function addSubject(subject) {
+  const button = document.createElement("button"), knob = model.knobs.find(k => k.key === CURVE);
+  button.type = "button";
+  button.textContent = `subject ${subject.subject}`;
+  button.addEventListener("click", () => {
+    state.values[CURVE] = knob.low;
+    state.modulus = subject.modulus;
+    state.hold = model.hold[model.hold.length - 1];
+    draw();
+  });
+  document.getElementById("subjects").append(button);
+  controls.push({ show() { button.setAttribute("aria-pressed", isOf(subject)); } });
+}
+
+const isOf = subject => state.modulus === subject.modulus && state.values[CURVE] <= model.flat;
 
 function readLink() {
   for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
@@ -392,6 +411,7 @@ function draw() {
   document.getElementById("elements").textContent =
     `The finite elements add an error of about ${(100 * found.estimated_error).toPrecision(2)} %.`;
   drawSection(found);
+  if (model.subjects.length) drawForce();
   drawPressure(found);
   drawEnergy(found);
   drawTime(found, whole);
@@ -471,6 +491,38 @@ function drawSection(found) {
     shape("line", { x1: 20, x2: 20 + 1e-3 * scale, y1: 245, y2: 245, stroke: "var(--ink)", "stroke-width": 3 }),
     shape("text", { x: 20, y: 237 }, "1 mm"));
   describe("section", `Section of the pad: the surface has sunk ${(depth * 1e3).toPrecision(3)} mm into it.`);
+}
+
+// Depth (m) at the end of the hold under a force (N).
+function depthUnder(force) {
+  const own = model.knobs.map(k => (k.key === FORCE ? force : state.values[k.key]) / (k.key === FORCE || k.key === RATE ? state.modulus : 1));
+  const group = model.groups.indentation_depth, point = model.knobs.map((k, i) => scaled(k, own[i]));
+  return Math.exp(atMoment(quantity("indentation_depth", terms(point, group.scales)), momentWeights(1, state.hold))[0]);
+}
+
+function drawForce() {
+  const knob = model.knobs.find(k => k.key === FORCE), now = state.values[FORCE], count = 16;
+  const low = knob.low * state.modulus, high = Math.min(knob.high * state.modulus, Math.max(1.1, now));
+  const curve = Array.from({ length: count + 1 }, (_, k) => low * Math.pow(high / low, k / count)).map(f => [depthUnder(f) * 1e3, f]);
+  const depths = model.subjects.flatMap(s => s.points.map(p => p[1] * 1e3));
+  const picture = axes("force", [0, Math.max(...depths, curve[count][0]) * 1.05], [0, high * 1.05], "depth (mm)", "force (N)");
+  picture.line(curve);
+  for (const subject of model.subjects) {
+    for (const [force, depth] of subject.points) {
+      picture.svg.append(shape("circle", { cx: picture.px(depth * 1e3), cy: picture.py(force), r: isOf(subject) ? 5 : 3,
+        fill: isOf(subject) ? "var(--second)" : "none", stroke: "var(--second)" }));
+    }
+  }
+  const forces = model.subjects.flatMap(s => s.points.map(p => p[0]));
+  const most = Math.max(...forces), least = Math.min(...forces);
+  const left = [];
+  if (state.values[CURVE] > model.flat) left.push("the surface is not flat");
+  if (now > most || now < least) left.push("the force lies outside them");
+  if (state.hold < model.hold[model.hold.length - 1]) left.push("the hold is short");
+  document.getElementById("beyond").textContent =
+    `Measured: a plate at rest, ${least.toPrecision(2)} to ${most.toPrecision(3)} N (${model.subjects[0].source}).` +
+    (left.length ? ` These knobs leave the measurements: ${left.join(", ")}.` : "");
+  describe("force", `Force against depth, under ${now.toPrecision(3)} N ${(depthUnder(now) * 1e3).toPrecision(3)} mm; points are measured fingers under a plate.`);
 }
 
 function drawPressure(found) {

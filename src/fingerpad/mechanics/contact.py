@@ -498,8 +498,8 @@ def _pivot(answer: Response, offset, load: float | None, active):
     """Forces (nr,), change of the depth and closed gaps (nr,) of the complementarity problem.
 
     All infeasible points are exchanged at once; if that stops helping, one at a time, which ends if
-    the compliance is positive definite, and else may come back to where it was. ``offset``: (nr,) m, gaps without forces. ``load``: N/m, of the depth's own equation; None
-    if the depth is given.
+    the compliance is positive definite, and else may come back to where it was. ``offset``: (nr,)
+    m, gaps without forces. ``load``: N/m, of the depth's own equation; None if the depth is given.
     """
     active, compliance, lever = active.copy(), answer.compliance, answer.lever
     by_force = load is not None
