@@ -31,6 +31,7 @@ exclude_patterns = ["_build", "_ext", "requirements.*"]
 templates_path, html_static_path, html_css_files = [], ["_static"], ["pages.css"]
 html_theme, html_title = "furo", "fingerpad"
 html_theme_options = {"sidebar_hide_name": False, "navigation_with_keys": True}
+html_extra_path = ["../figures/studies/explorer.html"]
 html_copy_source = html_show_sphinx = html_show_copyright = False
 math_numfig = False
 

@@ -64,7 +64,9 @@ def report_pages(job: SimpleNamespace) -> None:
     judged = "".join(Path(path).read_text(encoding="utf-8") for path in of["judged"])
     sources = map(Path, (*of["shown"], *of["published"]))
     for source, title, target in zip(sources, job.titles, job.pages, strict=True):
-        write_text(Path(target), page(title, *_parts(source, title, judged)))
+        whole = source.suffix == ".html"  # is a page already
+        text = source.read_text(encoding="utf-8") if whole else None
+        write_text(Path(target), text or page(title, *_parts(source, title, judged)))
 
 
 def _parts(source, title, judged):

@@ -171,7 +171,7 @@ def report(project: Project) -> Iterator[Job]:
         shown = [path for path in titles if titles[path].startswith(f"{chapter}-")]
         yield pages_of(project, f"Chapter {chapter}", shown, titles=titles)
     for category, folder, endings in (
-        ("Studies", c.studies, (".png", ".gif")),
+        ("Studies", c.studies, (".png", ".gif", ".html")),
         ("Tables", c.tables, (".csv",)),
     ):
         shown = [p for p in made if Path(p).parent == Path(folder) and p.endswith(endings)]

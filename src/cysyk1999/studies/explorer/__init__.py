@@ -1,0 +1,1 @@
+"""The emulator of the pad, and its page to play with."""
