@@ -23,13 +23,14 @@ def pages(tmp_path_factory):
         "studies/animation_stroke_10.gif",
         "tables/peers.csv",
         "tables/thesis_comparison.csv",
+        "studies/explorer.html",
     ]
     job = SimpleNamespace(
         shown=[FIGURES / path for path in shown[:2]],
         published=[str(FIGURES / path) for path in shown[2:]],
         judged=[FIGURES / "tables/thesis_comparison_chapter4.md"],
-        titles=["4-11: Profiles <of> pressure", "A stroke", "Peers", "The thesis"],
-        pages=[str(folder / f"{k}.html") for k in range(4)],
+        titles=["4-11: Profiles <of> pressure", "A stroke", "Peers", "The thesis", "The explorer"],
+        pages=[str(folder / f"{k}.html") for k in range(5)],
     )
     run(job)
     return [Path(path).read_text(encoding="utf-8") for path in job.pages]
@@ -52,8 +53,12 @@ def test_the_comparison_is_shown_with_all_its_chapters_and_links_that_lead_nowhe
     assert pages[3].count("<tr>") > 300
 
 
+def test_a_page_is_shown_as_it_is(pages):
+    assert pages[4] == (FIGURES / "studies/explorer.html").read_text(encoding="utf-8")
+
+
 def test_all_of_them_can_be_cited(pages):
-    assert all("CITATION.cff" in text and "Cysyk" in text for text in pages)
+    assert all("CITATION.cff" in text and "Cysyk" in text for text in pages[:4])
 
 
 def test_wide_tables_scroll_by_themselves():

@@ -354,14 +354,11 @@ EMULATED = {
 
 @number
 def emulator_errors():
-    """How far the emulator of cylinders is off, as Markdown; docs/emulator.csv is the ``held_out``
-    of what the how-to makes.
-    """
-    rows = pd.read_csv(ROOT / "docs/emulator.csv").query("quantity != 'estimated_error'")
+    """How far the emulator of the pad is off, as Markdown."""
+    rows = table("emulator").query("quantity != 'estimated_error'").drop(columns="unseen scenes")
     shown = []
-    for name, *shares in rows[["quantity", "median", "within_95", "covered"]].itertuples(False):
+    for name, median, most, covered in rows.itertuples(index=False):
         energy = re.sub(r"strain_energy_(\d+)_um", lambda m: f"strain energy at {m[1]} um", name)
-        median, most, covered = (100 * share for share in shares)
         errors = [f"{digits(median)} %", f"{digits(most)} %", f"{covered:.0f} %"]
         shown.append([EMULATED.get(name, energy), *errors])
     return markdown_table("quantity | median error | 95 % within | in the band", shown)
