@@ -156,7 +156,7 @@ def stability(frame: DataFrame) -> Figure:
             start += counts[outcome].to_numpy()
     ax.set(xlim=(0, start.max()), xlabel="cases", ylim=(-0.6, len(counts) - 0.4))
     ax.tick_params(axis="y", length=0)
-    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=len(ENDS), borderaxespad=0.2)
+    ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=4, borderaxespad=0.2)
     return fig
 
 
