@@ -12,6 +12,7 @@ from sklearn.gaussian_process.kernels import Matern
 import fingerpad
 from fingerpad.cli import main
 from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel
+from fingerpad.emulator.explorer import page
 from fingerpad.emulator.model import load_emulator
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.engine import lay_out
@@ -93,7 +94,7 @@ def history(scene):
     return xr.Dataset(data, places, {"estimated_error": 0.02 + 1e-5 * curvature})
 
 
-def made_up(folder, samples, seed=3, over=OVER, base=SCENE):
+def made_up(folder, samples, seed=3, over=OVER, base=SCENE, show=history):
     """The folder of a sweep whose histories are the made-up pad's."""
     keys = {"design": "sobol", "samples": samples, "seed": seed, "histories": True}
     read = load_sweep({"over": over, **keys}, "made_up", fingerpad.load_scene(base))
@@ -101,7 +102,7 @@ def made_up(folder, samples, seed=3, over=OVER, base=SCENE):
     (folder / "histories").mkdir()
     found = json.loads((folder / "design.json").read_text())
     for key, scene in zip(found["keys"], Design(read), strict=True):
-        history(scene).to_netcdf(folder / "histories" / f"{key}.nc")
+        show(scene).to_netcdf(folder / "histories" / f"{key}.nc")
     return folder
 
 
@@ -317,6 +318,103 @@ def test_a_sphere_on_a_body_of_revolution_is_emulated(tmp_path):
         pad.predict(scene())
 
 
+STROKE = {
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf"}, {"slide": "-4 mm", "speed": "8 mm/s"}],
+    "outputs": {"receptors": {"depths": ["600 um"], "offsets": ["-1 mm", "1 mm"]}},
+    "friction": 0.3,
+}
+ACROSS = {k: v for k, v in OVER.items() if "rate" not in k} | {"friction": {"range": [0.0, 0.8]}}
+
+
+def stroke(scene):
+    """A stroke of the made-up pad, which drags the contact along and then lets it slip."""
+    force, friction, load = scene.motion[0].press_to_force, scene.friction, 1.0
+    way = np.concatenate([[0, 0, 0], -4e-3 * np.arange(1, 33) / 32])
+    now = force * np.concatenate([[0, 0.5, 1], np.ones(32)])
+    depth, half, middle = np.array(
+        [truth(scene.stimulus.curvature, force, force, f / force) for f in now]
+    ).T
+    share, load = friction * np.tanh(way / 2e-3), now / LENGTH
+    centre, x = 1e-3 * share, np.concatenate([-RIGHT[:0:-1], RIGHT])
+    with np.errstate(all="ignore"):
+        place = np.nan_to_num((x - centre[:, None]) / half[:, None], nan=9, posinf=9, neginf=-9)
+    energy = [middle * np.exp(-((np.array(o) - centre) ** 2) / 4e-6) for o in (-1e-3, 1e-3)]
+    outputs, skin = ("time",), ("time", "skin_node")
+    data = {
+        "force": (outputs, load),
+        "leg": (outputs, (way < 0).astype(int)),
+        "stroke_distance": (outputs, way),
+        "tangential_force": (outputs, load * share),
+        "indentation_depth": (outputs, depth),
+        "contact_width": (outputs, 2 * half),
+        "peak_pressure": (outputs, middle),
+        "contact_pressure": (skin, middle[:, None] * np.clip(1 - place**2, 0, None)),
+        "skin_displacement_x": (skin, np.zeros(place.shape)),
+        "skin_displacement_y": (skin, -depth[:, None] * np.exp(-np.abs(x) / 2e-3)),
+        "strain_energy_density": (("time", "receptor"), np.array(energy).T),
+    }
+    places = {
+        "time": np.abs(way) / 8e-3 + 1e-12 * np.arange(len(way)),
+        "skin_x": ("skin_node", x),
+        "skin_y": ("skin_node", np.full(len(x), 6e-3)),
+        "skin_arc": ("skin_node", x),
+        "receptor_depth": ("receptor", [600e-6, 600e-6]),
+        "receptor_offset": ("receptor", [-1e-3, 1e-3]),
+    }
+    return xr.Dataset(data, places, {"estimated_error": 0.02})
+
+
+def test_a_stroke_is_emulated_along_its_way(tmp_path):
+    """Both sides differ, the edge of contact moves, and a shorter way is the beginning."""
+    folder = made_up(tmp_path / "strokes", 64, over=ACROSS, base=STROKE, show=stroke)
+    fingerpad.emulate(folder).save(tmp_path / "stroke.emulator")
+    pad = load_emulator(tmp_path / "stroke.emulator")
+    found = pad.predict(STROKE)
+    true = stroke(fingerpad.load_scene(STROKE)).isel(time=slice(2, None))
+    found = found.isel(time=slice(1, None))
+    for name in ("stroke_distance", "tangential_force", "indentation_depth", "contact_width"):
+        size = np.abs(true[name].values).max()
+        assert found[name].values == pytest.approx(true[name].values, abs=6e-3 * size), name
+    assert found.time.values == pytest.approx(true.time.values, abs=1e-9)
+    energy = true.strain_energy_density.values
+    assert found.strain_energy_density.values == pytest.approx(energy, abs=0.02 * energy.max())
+    left, right = found.strain_energy_density.values[-1]
+    assert left > 1.2 * right
+    x = (found.skin_x + found.skin_displacement_x[-1]).values
+    pressure = np.interp(x, true.skin_x, true.contact_pressure[-1])
+    assert np.abs(found.contact_pressure[-1] - pressure).max() < 0.03 * pressure.max()
+    rows = {row["quantity"]: row for row in pad.about["held_out"]}
+    assert rows["tangential_force"]["within_95"] < 0.01 and "centre_pressure" not in rows
+
+    def slid(**leg):
+        return STROKE | {"motion": [STROKE["motion"][0], STROKE["motion"][1] | leg]}
+
+    short = pad.predict(slid(slide="-1.3 mm")).isel(time=-1)
+    expected = np.interp(1.3e-3, -true.stroke_distance, true.tangential_force)
+    assert float(short.tangential_force) == pytest.approx(expected, rel=0.01)
+    for other, key in (({"slide": "4 mm"}, "slide"), ({"slide": "-5 mm"}, "slide: -0.005 m")):
+        with pytest.raises(fingerpad.SceneError, match=key):
+            pad.predict(slid(**other))
+    with pytest.raises(fingerpad.SceneError, match="keep"):
+        pad.predict(slid(keep="depth"))
+    assert len(pad.predict(STROKE | {"motion": STROKE["motion"][:1]}).time) == 2
+    with pytest.raises(fingerpad.SceneError, match="that is pressed at a rate and held"):
+        page(pad)
+
+
+def test_a_slide_that_keeps_the_depth_or_differs_in_length_is_refused(tmp_path):
+    kept = STROKE | {"motion": [STROKE["motion"][0], {"slide": "4 mm", "keep": "depth"}]}
+    long = ACROSS | {"motion[1].slide": {"range": ["-4 mm", "-1 mm"]}}
+    for name, more, said in (
+        ("kept", {"base": kept}, "slide under that force"),
+        ("long", {"base": STROKE, "over": long}, r"slide: is no knob; allowed: the longest"),
+    ):
+        folder = made_up(tmp_path / name, 2, **({"over": ACROSS, "show": stroke} | more))
+        with pytest.raises(fingerpad.SceneError, match=said):
+            fingerpad.emulate(folder)
+
+
 # --- refusals and files ---------------------------------------------------------------------------
 
 
@@ -385,7 +483,7 @@ def test_a_file_gives_the_same_answers(pad, tmp_path):
     xr.testing.assert_identical(again.predict(scene()), pad.predict(scene()))
     assert "code_sha256" in again.about["provenance"]
     with np.load(tmp_path / "pad.emulator", allow_pickle=False) as found:
-        assert json.loads(str(found["about"]))["format"] == 3
+        assert json.loads(str(found["about"]))["format"] == 4
 
 
 def test_the_commands_write_and_refuse(folder, tmp_path, capsys):

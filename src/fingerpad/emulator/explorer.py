@@ -63,7 +63,7 @@ def page(emulator: Emulator) -> str:
     """
     keys = [knob.key for knob in emulator.knobs]
     missing = [key for key in NEEDED if key not in keys]
-    if missing or not len(emulator.moments.hold):
+    if missing or emulator.moments.slid or not len(emulator.moments.later):
         raise SceneError(
             f"the emulator: {missing[0] if missing else 'motion[1].hold'} is no knob of it; "
             "allowed: of a cylinder or sphere that is pressed at a rate and held, with curvature, "
@@ -100,7 +100,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         ],
         "modulus": {"low": MODULUS[0], "high": MODULUS[1]},
         "press": _numbers(emulator.moments.press),
-        "hold": _numbers(emulator.moments.hold),
+        "hold": _numbers(emulator.moments.later),
         "soonest": SOONEST,
         "powers": emulator.powers.tolist(),
         "centres": _packed(emulator.centres),

@@ -15,7 +15,7 @@ import numpy as np
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import basis, exponents, kernel
-from fingerpad.emulator.model import ENERGY, LOGARITHMIC, SCALARS, Emulator, Group
+from fingerpad.emulator.model import ENERGY, LOGARITHMIC, SCALARS, SLID, Emulator, Group
 from fingerpad.emulator.question import Knob, scaled
 from fingerpad.emulator.samples import Samples, Swept
 
@@ -36,7 +36,7 @@ NOISES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 """Variance of what no Gaussian process explains, over that of the process."""
 SEARCHED, LEADING = 384, 2
 """Scenes by which lengths and noise are chosen, and principal components for lengths."""
-SMOOTH = (*SCALARS, "pressure_shape", "skin_displacement_x", "skin_displacement_y")
+SMOOTH = (*SCALARS, *SLID, "pressure_shape", "skin_displacement_x", "skin_displacement_y")
 """Quantities whose lengths are the same."""
 
 
@@ -46,7 +46,7 @@ def emulate(sweep: str | Path, unseen: str | Path | None = None) -> Emulator:
     Parameters
     ----------
     sweep
-        Folder of a finished sweep of presses, with or without a hold, whose file says
+        Folder of a finished sweep of presses, alone or before a hold or a slide, whose file says
         ``histories: true``.
     unseen
         Folder of another sweep of the same scene over the same keys, by which the emulator is
@@ -111,14 +111,16 @@ def fitted(swept: Swept, unseen: Samples | None = None) -> Emulator:
 
 def warped(knobs: list[Knob], samples: Samples) -> list[Knob]:
     """Each knob that is drawn evenly on the scale that leaves the least of depth, width and
-    pressure unexplained.
+    pressure unexplained, and of the lateral force of a stroke.
     """
-    some = samples.only(np.arange(min(len(samples.points), SEARCHED)))
-    target = np.log(np.stack([some.values[name][:, -1] for name in SCALARS[:3]], axis=1))
+    some = samples.only(np.arange(min(len(samples.points), SEARCHED))).values
+    shown = [np.log(some[name][:, -1]) for name in SCALARS[:3]]
+    shown += [some[SLID[1]][:, -1]] if SLID[1] in some else []
+    target = np.stack(shown, axis=1)
     target -= target.mean(axis=0)
 
     def left(of: list[Knob]) -> float:
-        at = scaled(of, some.points)
+        at = scaled(of, samples.points[: len(target)])
         return _size(missed(terms_of(at, at, np.full(len(of), 2.0)), 1e-4, target))
 
     for k, knob in enumerate(knobs):
@@ -163,7 +165,8 @@ def _size(values: np.ndarray) -> float:
 
 def lengths(swept: Swept) -> np.ndarray:
     """Lengths (knobs,) of the Gaussian processes of all but energies."""
-    parts = [Parts.of(swept.samples.values[name], name).scores for name in SMOOTH]
+    values = swept.samples.values
+    parts = [Parts.of(values[name], name).scores for name in SMOOTH if name in values]
     return _scales(scaled(swept.knobs, swept.samples.points), parts)
 
 
@@ -274,8 +277,10 @@ def _group(terms: np.ndarray, rows: np.ndarray, parts: Parts, scales: np.ndarray
 def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
     """How far an emulator is off for scenes that it was not fitted to, a row a quantity.
 
-    Relative errors from the end of the press on; of energies under the middle. ``covered`` is the
-    share within the emulator's own band, at all moments and receptors.
+    Relative errors from the end of the press on; of energies nearest to the middle. Under a stroke,
+    which may leave the middle, these are over the largest of the way, and lateral forces are over
+    the normal force. ``covered`` is the share within the emulator's own band, at all moments and
+    receptors.
     """
     found, rows = emulator.values(unseen.points), []
     top, grids = len(emulator.moments.press) - 1, emulator.grids
@@ -286,14 +291,20 @@ def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
         row |= {"within_95": float(np.quantile(off, 0.95)), "covered": float(inside.mean())}
         rows.append(row)
 
-    for name in LOGARITHMIC:
+    for name in (*emulator.moments.scalars, "estimated_error"):
         ratio = found[name] / unseen.values[name]
         inside = np.abs(np.log(ratio)) <= emulator.groups[name].band.reshape(ratio.shape[1:])
         add(name, ratio[:, top:] if name != "estimated_error" else ratio, inside)
+    slid = emulator.moments.slid
+    if slid:
+        off, band = found[SLID[1]] - unseen.values[SLID[1]], emulator.groups[SLID[1]].band
+        add("tangential_force", 1 + off[:, top:], np.abs(off) <= band)
     inside = np.abs(found[ENERGY] - unseen.values[ENERGY]) <= emulator.energy_band(unseen.points)
     for depth in np.unique(grids["receptor_depth"]):
         at = grids["receptor_depth"] == depth
-        middle = at & (grids["receptor_offset"] == 0)
-        ratio = found[ENERGY][:, top:, middle] / unseen.values[ENERGY][:, top:, middle]
-        add(f"strain_energy_{1e6 * depth:.4g}_um", ratio**2, inside[..., at])
+        aside = np.abs(grids["receptor_offset"])
+        middle = at & (aside == aside[at].min())
+        shown, true = (of[ENERGY][:, top:, middle] ** 2 for of in (found, unseen.values))
+        size = true.max(axis=1, keepdims=True) if slid else true
+        add(f"strain_energy_{1e6 * depth:.4g}_um", 1 + (shown - true) / size, inside[..., at])
     return rows

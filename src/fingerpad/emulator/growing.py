@@ -30,7 +30,7 @@ from fingerpad.emulator.fitting import (
     terms_of,
     warped,
 )
-from fingerpad.emulator.model import SCALARS, Emulator
+from fingerpad.emulator.model import Emulator
 from fingerpad.emulator.question import scaled
 from fingerpad.emulator.samples import GROWN, Swept
 from fingerpad.scenes.scene import recorded_scene
@@ -125,8 +125,9 @@ def grow(
 
 
 def _off(swept: Swept, terms: np.ndarray) -> np.ndarray:
-    """By how much each scene (n,) is missed by the others: the worst of `SCALARS`, relative."""
-    target = np.log(np.stack([swept.samples.values[n][:, -1] for n in SCALARS], axis=1))
+    """By how much each scene (n,) is missed by the others: the worst of its scalars, relative."""
+    names = swept.moments.scalars
+    target = np.log(np.stack([swept.samples.values[n][:, -1] for n in names], axis=1))
     target -= target.mean(axis=0)
     return np.abs(np.expm1(missed(terms, chosen_noise(terms, target), target))).max(axis=1)
 

@@ -18,9 +18,12 @@ from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, spread
 from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up, scaled
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
+from fingerpad.stimuli.motion import INSTANT
 
 SCALARS = ("indentation_depth", "contact_width", "peak_pressure", "centre_pressure")
 LOGARITHMIC = (*SCALARS, "estimated_error")
+SLID = ("contact_centre", "tangential_share")
+"""Of strokes: place of the middle of the pressure, over the depth; lateral over normal force."""
 ENERGY = "energy_root"
 UNITS = {
     "indentation_depth": "m",
@@ -30,6 +33,8 @@ UNITS = {
     "strain_energy_density": "Pa",
     "contact_pressure": "Pa",
     "force": "N/m",
+    "tangential_force": "N/m",
+    "stroke_distance": "m",
     "skin_displacement_x": "m",
     "skin_displacement_y": "m",
 }
@@ -37,38 +42,61 @@ STRESSES = ("peak_pressure", "centre_pressure")
 """Quantities that grow with the modulus factor."""
 PLACES = np.sin(np.pi / 2 * np.linspace(0, 1, 25))
 """Shares of the contact's half width, denser towards its edge."""
+WHOLE = np.linspace(-1.25, 1.25, 61)
+"""Likewise to both sides of the middle of the pressure of a stroke; it is nearer to one edge."""
 NODES = 161
 """Skin nodes of an answer."""
 ON_BORDER = 1e-8
 """m; a receptor this near a border belongs to the layer below, as the solver has it."""
-FORMAT = 3
+FORMAT = 4
 _CHUNK = 500
 _PARTS = ("mean", "rows", "coefficients", "band", "scales")
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Shares (n,) of the press's force and times (m,) of the hold, s, that quantities are known
-    at.
+    """When quantities are known.
+
+    Attributes
+    ----------
+    press : (n,) shares of the press's force.
+    later : (m,) times of the hold, s, or ways of the slide, m.
+    slid : whether the second leg is a slide.
     """
 
     press: np.ndarray
-    hold: np.ndarray
+    later: np.ndarray
+    slid: bool = False
 
     def __len__(self) -> int:
-        return len(self.press) + len(self.hold)
+        return len(self.press) + len(self.later)
 
-    def weights(self, share: np.ndarray, hold: np.ndarray) -> np.ndarray:
-        """Weights (k, moments) of the values at all moments: at a share of the press while `hold`
-        is 0, in the hold where it is above.
+    @property
+    def scalars(self) -> tuple[str, ...]:
+        """Names of `SCALARS` that are emulated: under a stroke the middle may lose contact."""
+        return SCALARS[:3] if self.slid else SCALARS
+
+    @property
+    def places(self) -> np.ndarray:
+        """Shares of the half width, from the middle, at which pressure is emulated."""
+        return WHOLE if self.slid else PLACES
+
+    def even(self, later: np.ndarray) -> np.ndarray:
+        """The scale in which the second leg is interpolated."""
+        return np.abs(later) if self.slid else held(later)
+
+    def weights(self, share: np.ndarray, later: np.ndarray) -> np.ndarray:
+        """Weights (k, moments) of the values at all moments: at a share of the press while `later`
+        is 0, in the second leg where it is not.
         """
         found, n = np.zeros((len(share), len(self))), len(self.press)
-        in_press = np.asarray(hold) <= 0
+        in_press = np.asarray(later) == 0
         press = cubic_weights(np.log(self.press), np.log(np.asarray(share)[in_press]))
         found[in_press, :n] = press
         if not in_press.all():
-            grid = np.concatenate([[0.0], held(self.hold)])
-            found[~in_press, n - 1 :] = cubic_weights(grid, held(np.asarray(hold)[~in_press]))
+            grid = np.concatenate([[0.0], self.even(self.later)])
+            at = self.even(np.asarray(later)[~in_press])
+            found[~in_press, n - 1 :] = cubic_weights(grid, at)
         return found
 
 
@@ -286,7 +314,8 @@ class Emulator:
         ----------
         scene
             A scene, its file, or a dictionary. It may differ from the sweep's in the sweep's keys,
-            in a common factor of all moduli, and in a shorter hold. Its accuracy is not looked at.
+            in a common factor of all moduli, and in a shorter hold or slide. Its accuracy is not
+            looked at.
         extrapolate
             Answer outside the box too. The band is then NaN: nothing is known of it.
 
@@ -308,8 +337,8 @@ class Emulator:
         return self._history(asked)
 
     def _history(self, asked: Question) -> xr.Dataset:
-        share, hold, time, leg = self._times(asked)
-        weights = self.moments.weights(share, hold)
+        share, later, time, leg = self._times(asked)
+        weights, slid = self.moments.weights(share, later), self.moments.slid
         found = {k: v[0] for k, v in self.values(asked.point[None], None, weights).items()}
         keys = {k.key: v for k, v in zip(self.knobs, asked.point, strict=True)}
         force = keys.get("motion[0].press_to_force", self.base["motion"][0]["press_to_force"])
@@ -317,12 +346,17 @@ class Emulator:
         depth, half = found["indentation_depth"], found["contact_width"] / 2
         grids, turned = self.grids, self.turned
         arc = np.linspace(0 if turned else -1, 1, NODES) * grids["arc"][-1]
-        near = np.abs(arc)
+        near, side = (arc, 1.0) if slid else (np.abs(arc), np.sign(arc))
         skin = {n: np.interp(near, grids["arc"], grids[n]) for n in ("skin_x", "skin_y")}
-        skin["skin_x"] *= np.sign(arc)
+        skin["skin_x"] *= side
         data: dict[str, Any] = {"force": ("time", load), "leg": ("time", leg)}
-        bands = self._bands(weights, asked)
-        for name in SCALARS:
+        bands, centre = self._bands(weights, asked), np.zeros(len(time))
+        if slid:
+            centre = found["contact_centre"] * depth
+            data["stroke_distance"] = "time", later
+            data["tangential_force"] = "time", load * found["tangential_share"]
+            data["tangential_force_error"] = "time", load * bands["tangential_share"]
+        for name in self.moments.scalars:
             values = found[name] * (asked.modulus if name in STRESSES else 1.0)
             data[name] = "time", values
             data[f"{name}_error"] = "time", values * bands[name]
@@ -336,30 +370,37 @@ class Emulator:
             name = f"skin_displacement_{axis}"
             rows = found[name] * depth[:, None]
             moved = np.array([np.interp(near, grids["arc"], row) for row in rows])
-            data[name] = ("time", "skin_node"), moved * (np.sign(arc) if axis == "x" else 1.0)
-        place = np.abs(skin["skin_x"] + data["skin_displacement_x"][1]) / half[:, None]
+            data[name] = ("time", "skin_node"), moved * (side if axis == "x" else 1.0)
+        place = skin["skin_x"] + data["skin_displacement_x"][1] - centre[:, None]
+        place = (place if slid else np.abs(place)) / half[:, None]
         place = np.where(skin["skin_y"] > 0, place, 2.0)
         mean = load / spread(half, turned)
         for name, rows in (("", found["pressure_shape"]), ("_error", bands["pressure_shape"])):
-            shown = [np.interp(s, PLACES, r, right=0.0) for s, r in zip(place, rows, strict=True)]
+            known = zip(place, rows, strict=True)
+            shown = [np.interp(s, self.moments.places, r, right=0.0) for s, r in known]
             pressure = np.maximum(shown, 0.0) * mean[:, None]
             data[f"contact_pressure{name}"] = ("time", "skin_node"), pressure
         return self._labelled(data, time, arc, skin, wanted, found["estimated_error"], asked)
 
     def _times(self, asked: Question) -> tuple[np.ndarray, ...]:
         """Share of the force, time since the press, time and leg of the outputs after the first."""
-        press, hold = self.moments.press, self.moments.hold
-        last = 0.0 if asked.hold is None else asked.hold
-        held_at = np.append(hold[hold < last * (1 - 1e-9)], [last] if last > 0 else [])
+        press, later = self.moments.press, self.moments.later
+        last = 0.0 if asked.later is None else asked.later
+        own = np.abs(later) < abs(last) * (1 - 1e-9)
+        after = np.append(later[own], [last] if last else [])
         keys = {k.key: v for k, v in zip(self.knobs, asked.point, strict=True)}
         leg = self.base["motion"][0]
         force = keys.get("motion[0].press_to_force", leg["press_to_force"])
         rate = keys.get("motion[0].rate", leg.get("rate"))
         top = force / rate if rate else 0.0
-        share = np.concatenate([press, np.ones(len(held_at))])
-        since = np.concatenate([np.zeros(len(press)), held_at])
-        number = np.concatenate([np.zeros(len(press), int), np.ones(len(held_at), int)])
-        return share, since, top * share + since, number
+        share = np.concatenate([press, np.ones(len(after))])
+        since = np.concatenate([np.zeros(len(press)), after])
+        number = np.concatenate([np.zeros(len(press), int), np.ones(len(after), int)])
+        if not self.moments.slid:
+            return share, since, top * share + since, number
+        speed = keys.get("motion[1].speed", self.base["motion"][1].get("speed"))
+        moved = np.abs(since) / speed if speed else INSTANT * np.arange(len(since))
+        return share, since, top * share + moved, number
 
     def _bands(self, weights: np.ndarray, asked: Question) -> dict[str, np.ndarray]:
         """Half width of the band of each quantity at weighted moments, relative where it is
@@ -381,10 +422,11 @@ class Emulator:
         places = list(zip(self.grids["receptor_depth"], self.grids["receptor_offset"], strict=True))
         found = []
         for depth, offset in asked.receptors:
+            aimed = offset if self.moments.slid else abs(offset)
             near = [
                 k
                 for k, (d, o) in enumerate(places)
-                if abs(d - depth) < 1e-7 and abs(o - abs(offset)) < 1e-7
+                if abs(d - depth) < 1e-7 and abs(o - aimed) < 1e-7
             ]
             if not near:
                 depths = ", ".join(f"{1e6 * d:g}" for d in dict.fromkeys(p[0] for p in places))
@@ -428,19 +470,20 @@ class Emulator:
     def save(self, path: str | Path) -> None:
         """Write a file that `load_emulator` reads: numpy's npz, without pickle.
 
-        ``about`` is JSON text: format, knobs, scene, shapes, provenance. Arrays are ``press``,
-        ``hold``, ``powers``, ``centres``, ``grid_<name>``, and of each quantity ``<name>_mean``,
-        ``_rows``, ``_coefficients``, ``_band`` and ``_scales``.
+        ``about`` is JSON text: format, knobs, scene, slid, shapes, provenance. Arrays are
+        ``press``, ``later``, ``powers``, ``centres``, ``grid_<name>``, and of each quantity
+        ``<name>_mean``, ``_rows``, ``_coefficients``, ``_band`` and ``_scales``.
         """
         about = {
             "format": FORMAT,
             "knobs": [knob.record() for knob in self.knobs],
             "base": self.base,
+            "slid": self.moments.slid,
             "shapes": {name: list(group.shape) for name, group in self.groups.items()},
             "about": self.about,
         }
         arrays: dict[str, Any] = {"about": np.array(json.dumps(about))}
-        arrays |= {"press": self.moments.press, "hold": self.moments.hold}
+        arrays |= {"press": self.moments.press, "later": self.moments.later}
         arrays |= {"powers": self.powers, "centres": self.centres}
         arrays |= {f"grid_{name}": grid for name, grid in self.grids.items()}
         for name, group in self.groups.items():
@@ -489,7 +532,7 @@ def load_emulator(file: str | Path) -> Emulator:
         }
         grids = {k.removeprefix("grid_"): v for k, v in arrays.items() if k.startswith("grid_")}
         knobs = [Knob(**knob) for knob in about["knobs"]]
-        moments = Moments(arrays["press"], arrays["hold"])
+        moments = Moments(arrays["press"], arrays["later"], about["slid"])
         places = arrays["powers"], arrays["centres"]
         return Emulator(knobs, about["base"], moments, grids, *places, groups, about["about"])
     except FileNotFoundError:

@@ -2,7 +2,7 @@
 
 All moduli m times as large under m times the force, which rises m times as fast, deform the pad in
 the same way: stresses are m times as large. So a factor of all moduli is exact and no knob. A hold
-that ends sooner is the beginning of a longer one.
+or a slide that ends sooner is the beginning of a longer one.
 """
 
 from __future__ import annotations
@@ -93,8 +93,8 @@ class Question:
         (knobs,), SI, of the pad at modulus factor 1.
     modulus : float
         Moduli over those of the sweep's pad.
-    hold : float or None
-        Length of the hold, s; None in a scene without.
+    later : float or None
+        Length of the second leg, a hold (s) or a slide (m); None in a scene without.
     receptors : tuple of tuple
         (depth, offset), m.
     outside : tuple of str
@@ -103,7 +103,7 @@ class Question:
 
     point: np.ndarray
     modulus: float
-    hold: float | None
+    later: float | None
     receptors: tuple[tuple[float, float], ...]
     outside: tuple[str, ...] = ()
 
@@ -183,10 +183,14 @@ def ask(
         said |= {("stimulus", "shape"): "cylinder", ("stimulus", "curvature"): 0.0}
     _same_legs(scene.name, said, known)
     modulus = _modulus(scene.name, said, known)
-    hold = said.pop(("motion", 1, "hold"), None)
-    longest = known.pop(("motion", 1, "hold"), None)
-    if hold is not None and hold > longest * (1 + SAME):
-        raise _refusal(scene.name, "motion[1].hold", f"{hold:g} s", f"up to {longest:g} s")
+    leg, unit = ("slide", "m") if ("motion", 1, "slide") in known else ("hold", "s")
+    later = said.pop(("motion", 1, leg), None)
+    longest = known.pop(("motion", 1, leg), None)
+    if later is None:
+        known = {path: value for path, value in known.items() if path[:2] != ("motion", 1)}
+    elif not 0 < later / longest <= 1 + SAME:
+        allowed = f"up to {longest:g} {unit}"
+        raise _refusal(scene.name, f"motion[1].{leg}", f"{later:g} {unit}", allowed)
     point, outside = [], []
     _same(scene.name, ("stimulus", "shape"), said, known)  # first, for its other keys depend on it
     for knob in knobs:
@@ -210,7 +214,7 @@ def ask(
         _same(scene.name, path, said, known)
     receptors = scene.outputs.receptors
     places = tuple((d, o) for d in receptors.depths for o in receptors.offsets)
-    return Question(np.array(point), modulus, hold, places, tuple(outside))
+    return Question(np.array(point), modulus, later, places, tuple(outside))
 
 
 def _plain(canonical: Mapping[str, Any]) -> dict[str, Any]:
@@ -222,9 +226,9 @@ def _dotted(path: tuple) -> str:
 
 
 def _same_legs(name: str, said: Mapping[tuple, Any], known: Mapping[tuple, Any]) -> None:
-    """Refuse other legs than the sweep's; a last hold may be left out."""
+    """Refuse other legs than the sweep's; a second one may be left out."""
     legs = [{p[1:3] for p in of if p[0] == "motion"} for of in (said, known)]
-    if legs[0] != legs[1] and legs[0] | {(1, "hold")} != legs[1]:
+    if legs[0] not in (legs[1], {leg for leg in legs[1] if leg[0] == 0}):
         words = [" then ".join(sorted(str(k) for _, k in of)) for of in legs]
         raise _refusal(name, "motion", words[0], f"{words[1]}, as in the sweep")
 

@@ -16,14 +16,14 @@ import xarray as xr
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import SOONEST, cubic_weights, held, spread
-from fingerpad.emulator.model import ENERGY, PLACES, SCALARS, Moments
+from fingerpad.emulator.model import ENERGY, SLID, Moments
 from fingerpad.emulator.question import Knob
 from fingerpad.results import read_history
 from fingerpad.stimuli.motion import NO_TIME
 from fingerpad.units import dimension_of, parse_quantity
 
-HOLDS = 12
-"""Moments of a hold."""
+HOLDS, SLIDES = 12, 32
+"""Moments of a hold, and of a slide."""
 ARCS = 41
 """Places on the right half of the skin."""
 GROWN = "grown"
@@ -90,7 +90,7 @@ class Swept:
         knobs, base = _knobs(folder, design), json.loads(design["about"]["base_scene"])
         moments = _moments(folder, base)
         histories = list(_histories(folder, design, len(knobs)))
-        grids = _grids(histories[0][1])
+        grids = _grids(histories[0][1], moments)
         samples, lost = _samples(histories, moments, grids)
         about, drawn = design["about"], len(samples.points)
         found = cls(folder, about, knobs, base, moments, grids, samples, drawn, lost)
@@ -130,6 +130,9 @@ def _knobs(folder: Path, design: Mapping[str, Any]) -> list[Knob]:
         if not p["unit"]:
             allowed = "numbers; make a sweep and an emulator for each of its values"
             raise SceneError(f"{folder}: over.{p['key']}: is not a number; allowed: {allowed}")
+        if p["key"] in ("motion[1].hold", "motion[1].slide"):
+            allowed = "the longest alone; a shorter one is its beginning"
+            raise SceneError(f"{folder}: over.{p['key']}: is no knob; allowed: {allowed}")
         per = 1.0 if p["unit"] == "1" else _si(p["unit"])
         axis = over.get(p["key"], {})
         ends = axis.get("range") or axis.get("uniform")
@@ -170,30 +173,33 @@ def _histories(folder: Path, design: Mapping[str, Any], knobs: int) -> Iterator[
 
 
 def _moments(folder: Path, base: Mapping[str, Any]) -> Moments:
-    """The moments of the sweep's motion: a press, with or without a hold."""
+    """The moments of the sweep's motion: a press, alone or before a hold or a slide."""
     legs = base["motion"]
-    kinds = [next(iter(leg.keys() & {"press_to_force", "hold"}), "") for leg in legs]
-    if kinds not in (["press_to_force"], ["press_to_force", "hold"]):
-        allowed = "a press to a force, with or without a hold"
+    kinds = [next(iter(leg.keys() & {"press_to_force", "hold", "slide"}), "") for leg in legs]
+    keeps = legs[-1].get("keep", "force") == "force"
+    if kinds[0] != "press_to_force" or kinds[1:] not in ([], ["hold"], ["slide"]) or not keeps:
+        allowed = "a press to a force, alone or before one hold or one slide under that force"
         raise SceneError(f"{folder}: its scenes move otherwise; allowed: {allowed}")
     rises = legs[0].get("rate") is not None
     press = np.linspace(0.1, 1.0, 10) if rises else np.ones(1)
+    if kinds[1:] == ["slide"]:
+        return Moments(press, np.linspace(0, legs[1]["slide"], SLIDES + 1)[1:], slid=True)
     longest = legs[1]["hold"] if len(legs) > 1 else 0.0
     holds = np.expm1(np.linspace(0, held(longest), HOLDS + 1))[1:] * SOONEST
     return Moments(press, holds if longest else np.zeros(0))
 
 
-def _grids(first: xr.Dataset) -> dict[str, np.ndarray]:
+def _grids(first: xr.Dataset, moments: Moments) -> dict[str, np.ndarray]:
     """What a sweep's histories share: places of the skin and of receptors."""
+    most = float(np.abs(first.skin_arc.values).max()) * 0.98
+    half = np.linspace(0, most, ARCS)
     grids = {
-        "arc": np.linspace(0, float(np.abs(first.skin_arc.values).max()) * 0.98, ARCS),
+        "arc": np.concatenate([-half[:0:-1], half]) if moments.slid else half,
         "receptor_depth": first.receptor_depth.values,
         "receptor_offset": first.receptor_offset.values,
     }
-    right = first.skin_arc.values >= 0
     for name in ("skin_x", "skin_y"):
-        of = first[name].values
-        grids[name] = np.interp(grids["arc"], first.skin_arc.values[right], of[right])
+        grids[name] = np.interp(grids["arc"], first.skin_arc.values, first[name].values)
     return grids
 
 
@@ -220,17 +226,18 @@ def _row(history: xr.Dataset, moments: Moments, grids: Mapping[str, np.ndarray])
         return np.tensordot(weights, values[own], 1)
 
     row = {}
-    for name in SCALARS:
+    for name in moments.scalars:
         row[name] = np.exp(at(np.log(history[name].values)))
-    load = history.force.values
+    load, depth = history.force.values, history.indentation_depth.values
+    centre = _centres(history) if moments.slid else np.zeros(len(load))
+    if moments.slid:
+        lateral = history.tangential_force.values / load
+        row |= dict(zip(SLID, (at(centre / depth), at(lateral)), strict=True))
     row[ENERGY] = at(np.sqrt(history.strain_energy_density.values) / load[:, None])
-    shape = _pressure_shapes(history, load)
-    row["pressure_shape"] = at(shape)
-    depth = history.indentation_depth.values
-    right = history.skin_arc.values >= 0
-    arc = history.skin_arc.values[right]
+    row["pressure_shape"] = at(_pressure_shapes(history, load, centre, moments.places))
+    arc = history.skin_arc.values
     for name in ("skin_displacement_x", "skin_displacement_y"):
-        moved = history[name].values[:, right] / depth[:, None]
+        moved = history[name].values / depth[:, None]
         row[name] = at(np.array([np.interp(grids["arc"], arc, r) for r in moved]))
     row["estimated_error"] = np.array([float(history.attrs["estimated_error"])])
     return row
@@ -248,21 +255,29 @@ def _at_moments(history: xr.Dataset, moments: Moments) -> tuple[np.ndarray, np.n
     grid = np.log(history.force.values[press] / history.force.values[top])
     first = cubic_weights(grid, np.log(moments.press))
     later = np.concatenate([[top], np.flatnonzero(leg == 1)])
-    rest = cubic_weights(held(time[later] - time[top]), held(moments.hold))
+    along = history.stroke_distance.values if moments.slid else time
+    rest = cubic_weights(moments.even(along[later] - along[top]), moments.even(moments.later))
     weights = np.zeros((len(moments), len(press) + len(later)))
     weights[: len(first), : len(press)] = first
-    if len(moments.hold):
+    if len(moments.later):
         weights[len(first) :, len(press) :] = rest
     return weights, np.concatenate([press, later])
 
 
-def _pressure_shapes(history: xr.Dataset, load: np.ndarray) -> np.ndarray:
+def _centres(history: xr.Dataset) -> np.ndarray:
+    """Where (time) the middle of the pressure lies, m."""
+    place = history.skin_x.values + history.skin_displacement_x.values
+    pressure = history.contact_pressure.values
+    return (pressure * place).sum(axis=1) / pressure.sum(axis=1)
+
+
+def _pressure_shapes(history: xr.Dataset, load, centre, places: np.ndarray) -> np.ndarray:
     """Pressure (time, places) over the mean pressure, at shares of the contact's half width."""
     place = history.skin_x.values + history.skin_displacement_x.values
     half, turned = history.contact_width.values / 2, "contact_radius" in history
-    upper = (history.skin_y.values > 0) & (history.skin_arc.values >= 0)
-    found = np.zeros((len(load), len(PLACES)))
+    upper = (history.skin_y.values > 0) & (history.skin_arc.values >= (0 if places[0] == 0 else -1))
+    found = np.zeros((len(load), len(places)))
     for k in np.flatnonzero((half > 0) & (load > 0)):
-        x, p = place[k, upper] / half[k], history.contact_pressure.values[k, upper]
-        found[k] = np.interp(PLACES, x, p) * spread(half[k], turned) / load[k]
+        x, p = (place[k, upper] - centre[k]) / half[k], history.contact_pressure.values[k, upper]
+        found[k] = np.interp(places, x, p) * spread(half[k], turned) / load[k]
     return found
