@@ -368,4 +368,4 @@ def test_catalogue_says_what_is_hard_and_what_is_stable(tmp_path):
     assert all(case.hard and case.stable and case.group for case in CATALOGUE.values())
     for name in [*PICKED, *FAST]:
         assert CATALOGUE[name].read(tmp_path).name == name
-    assert Limits(cuts=2).described() == "at most 2 cuts" and Limits().described() == "as all"
+    assert Limits(cuts=3).described() == "at most 3 cuts" and Limits().described() == "as all"
