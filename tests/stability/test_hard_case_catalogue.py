@@ -202,7 +202,7 @@ def test_a_case_heals_and_is_then_judged_like_any_other():
     case, found = CATALOGUE[name], compared(CATALOGUE[name], done(name))
     better = healed(case, found)
     assert found.outcome == ADMITS and better.outcome == HEALED
-    assert "divided into four" in better.message and better.measured["halving"] < 0.05
+    assert "divided into four" in better.message and 0 < better.measured["halving"] < 0.05
     strict = replace(case, limits=replace(case.limits, det_f=2.0))
     assert healed(strict, found).outcome == SILENT
     forbidden = replace(case, scene=case.scene | {"on_trouble": "stop"})

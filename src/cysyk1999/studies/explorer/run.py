@@ -10,16 +10,15 @@ from typing import Any
 import pandas as pd
 
 from cysyk1999.publishing.tables import publish_table
+from cysyk1999.studies.common.sweeps import run_on_all_cores
 from fingerpad.documents import read_yaml
 from fingerpad.emulator.explorer import page
 from fingerpad.emulator.growing import grow
 from fingerpad.files import write_text
-from fingerpad.sweeps.engine import held, lay_out, run_layout
 from fingerpad.sweeps.language import load_sweep
 
-TOLERANCE = 0.005
-"""Relative error that scenes are added until, and most scenes that are."""
-MOST_ADDED = 256
+TOLERANCE, MOST_ADDED = 0.005, 256
+"""Relative error until which scenes are added, and how many at most."""
 UNSEEN = {"seed": 2, "samples": 500}
 """Keys of the sweep that the emulator is judged by."""
 FOLDER = Path("results/sweeps")
@@ -28,10 +27,11 @@ FOLDER = Path("results/sweeps")
 
 def pad_page(job: SimpleNamespace) -> None:
     """Job: `sweep` (YAML) -> `emulator`, `page` (HTML), `table`."""
-    document, cores = read_yaml(Path(job.sweep[0])), len(os.sched_getaffinity(0))
-    name = Path(job.sweep[0]).stem
-    swept = _swept(document, FOLDER / name, cores)
-    unseen = _swept(document | UNSEEN, FOLDER / f"{name}_unseen", cores)
+    document, name = read_yaml(Path(job.sweep[0])), Path(job.sweep[0]).stem
+    swept, unseen = FOLDER / name, FOLDER / f"{name}_unseen"
+    run_on_all_cores(load_sweep(document, name), swept)
+    run_on_all_cores(load_sweep(document | UNSEEN, unseen.name), unseen)
+    cores = len(os.sched_getaffinity(0))
     made = grow(swept, TOLERANCE, scenes=MOST_ADDED, cores=cores, unseen=unseen)
     Path(job.emulator[0]).parent.mkdir(parents=True, exist_ok=True)
     made.save(job.emulator[0])
@@ -55,10 +55,3 @@ def errors(about: dict[str, Any]) -> pd.DataFrame:
         "element runs of the same accuracy, from the end of the press to the end of the hold."
     )
     return rows
-
-
-def _swept(document: dict[str, Any], folder: Path, cores: int) -> Path:
-    """Run a sweep in a folder."""
-    with held(folder) as lock:
-        run_layout(lay_out(load_sweep(document, folder.name), folder, cores), cores, lock=lock)
-    return folder
