@@ -5,6 +5,7 @@ a run without trouble is left as it is.
 import json
 import pickle
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -180,6 +181,72 @@ def test_all_further_runs_together_take_no_more_than_the_budget(monkeypatch):
     for work in further:
         assert work <= left / 2
         left -= work
+
+
+# -- a run that meets a corner ---
+
+
+STEEP_FLANKS = Path("config/stability/steep_flanks.csv").absolute()
+CORNERS = PRESS | {"stimulus": {"shape": "sampled", "csv": str(STEEP_FLANKS)}}
+
+
+@pytest.fixture
+def by_steps(monkeypatch):
+    """Runs of CORNERS whose depth (mm) depends on into how many pieces a step is cut; None: such a
+    run breaks off. The pieces of the runs that are made.
+    """
+    solved = solve(CORNERS)
+
+    def chosen(depths):
+        made = []
+
+        def known(scene, how, *_):
+            made.append(how.relaxed.pieces)
+            depth = depths[how.relaxed.pieces]
+            if depth is None:
+                raise NonConvergence(0.0, "made up", "a smaller force")
+            return solved.assign(indentation_depth=solved.indentation_depth * 0 + 1e-3 * depth)
+
+        monkeypatch.setattr(healing, "solve", known)
+        return made
+
+    return chosen
+
+
+def test_steps_half_as_long_confirm_a_run_that_meets_a_corner(by_steps):
+    made = by_steps({1: 1.0, 2: 1.02})
+    found = simulate(CORNERS)
+    assert made == [1, 2] and found.indentation_depth[-1] == 1e-3
+    assert "changed its depth by 2 %" in found.attrs["notes"] and "doubts" not in found.attrs
+
+
+def test_steps_that_change_a_run_which_meets_a_corner_are_halved_once_more(by_steps):
+    made = by_steps({1: 1.0, 2: 1.2, 4: 1.2})
+    found = simulate(CORNERS)
+    assert made == [1, 2, 4] and found.indentation_depth[-1] == pytest.approx(1.2e-3)
+    assert "doubts" not in found.attrs
+
+
+@pytest.mark.parametrize("depths", [{1: 1.0, 2: 1.2, 4: 1.5}, {1: 1.0, 2: None}])
+def test_a_run_that_its_steps_change_doubts_itself(by_steps, depths):
+    by_steps(depths)
+    found = simulate(CORNERS | {"on_trouble": {"budget": 6}, "accuracy": {"skin_edge": "0.2 mm"}})
+    assert "steps half as long" in found.attrs["doubts"]
+
+
+def test_steps_by_hand_are_kept_beside_the_doubt(by_steps):
+    made = by_steps({1: 1.0, 2: 1.2})
+    found = simulate(CORNERS | {"accuracy": {"steps": 4, "skin_edge": "0.2 mm"}})
+    assert made == [1, 2] and found.indentation_depth[-1] == 1e-3
+    assert "changed its depth by 20 %" in found.attrs["doubts"]
+
+
+def test_a_run_is_made_once_without_a_corner_and_where_the_scene_says_stop(by_steps):
+    made = by_steps({1: 1.0})
+    simulate(CORNERS | {"on_trouble": "stop"})
+    assert made == [1]
+    assert plan(CORNERS).checked and not plan(PRESS).checked and not plan(EDGE).checked
+    assert plan(EDGE | {"motion": [{"press_to_force": "20 gf"}, {"slide": "1 mm"}]}).checked
 
 
 # -- what may be relaxed ---

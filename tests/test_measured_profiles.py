@@ -12,7 +12,7 @@ from fingerpad import load_scene, plan, simulate
 from fingerpad.cli import main
 from fingerpad.documents import SceneError
 from fingerpad.mechanics import stepping
-from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.mechanics.stepping import NonConvergence, first_touch
 from fingerpad.planning.plan import PlanError, read_plan
 from fingerpad.results import summary
 from fingerpad.stimuli.shapes import Cylinder
@@ -184,6 +184,20 @@ def test_one_more_point_is_no_endless_wedge(tmp_path):
     assert depth[1:] == [pytest.approx(depth[0], rel=1e-4), pytest.approx(1.559, abs=0.01)]
     assert "contact_reached_profile_end" not in summary(plain)["run"]
     assert summary(extended)["run"]["contact_reached_profile_end"]
+
+
+def test_a_rim_that_falls_touches_where_it_is_lowest():
+    """It is rounded, and lower than its last point, where the profile is moved down until it
+    touches: nothing is inside the skin before.
+    """
+    x = np.linspace(-8e-3, 8e-3, 81)
+    hollow = Points(x, 3.2e-3 * (1 - (x / 8e-3) ** 2)).at(0.0, 0.2e-3)
+    skin = np.column_stack([np.linspace(-10e-3, 10e-3, 801), np.zeros(801)])
+    height = first_touch(skin, hollow)
+    gap = hollow.evaluate(skin - [0.0, height])[0]
+    assert gap.min() == pytest.approx(0.0, abs=1e-7)
+    slope = np.arctan(2 * 3.2 / 8 * (1 - 0.1 / 8))  # of the last two points
+    assert height == pytest.approx(0.2e-3 * (1 - np.cos(slope)), rel=0.02)
 
 
 def test_contact_at_the_end_of_the_points_is_said(tmp_path, capsys):

@@ -1,11 +1,12 @@
 """A run that is in trouble, run again with less asked of its method: one thing after the other, the
-cheapest first, until it runs well or a budget of work is spent.
+cheapest first, until it runs well or a budget of work is spent. Where the skin may pass a corner
+one way or another, a run that went well is compared with one whose steps are half as long.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -29,6 +30,10 @@ from fingerpad.specimen.pad import PadMesh
 MOST_FACTORISATIONS = 10.0
 MOST_CUTS = 2
 """Matrices factorised, mean of the states, and cuts of steps above which a run labours."""
+MOST_CHANGE = 0.05
+"""Share by which steps half as long may change a run that meets a corner; with more it doubts
+itself.
+"""
 FINER = (1.4, 1.9)
 """By how much shorter the edges of a built mesh are made: nearly twice and four times the nodes."""
 EASY_FACTORISATIONS = 2.0
@@ -42,11 +47,13 @@ TIP = 2.0
 FINE, LABOURS, DOUBTS, BROKE_OFF = range(4)
 WORDS = ("ran well", "laboured", "doubted itself", "broke off")
 _COMPARED = {
-    "depth": "indentation_depth",
     "force": "force",
-    "width": "contact_width",
-    "stored energy": "stored_energy",
+    "indentation_depth": "depth",
+    "stored_energy": "stored energy",
+    "contact_width": "width",
+    "tangential_force": "side force",
 }
+"""What two runs of a scene are compared by, and what it is called."""
 _TOLD = 5e-3
 """Changes less than this share are none worth telling."""
 
@@ -88,7 +95,8 @@ class Try:
         if self.problem is not None:
             return self.problem.advice
         if self.rank == DOUBTS:
-            return "; ".join(json.loads(self.history.attrs["doubts"]))
+            doubts = json.loads(self.history.attrs["doubts"])
+            return "; ".join(doubt.partition(": ")[2] for doubt in doubts)
         return "more steps, a finer mesh"
 
     @property
@@ -216,37 +224,120 @@ def healed(
         Its history, or its problem, says what was tried.
     """
     how = first.scene.relaxing
-    if how is None or first.rank == FINE:
+    if how is None:
         return first
-    run = partial(attempt, mesh=mesh, progress=progress, fields=fields)
-    best, tried = _best(first, how, mesh, run)
+    runs = _Runs(
+        how.budget * _work(first), partial(attempt, mesh=mesh, progress=progress, fields=fields)
+    )
+    first = _compared(first, how, runs)
+    if first.rank == FINE:
+        return first
+    best, tried = _best(first, how, mesh, runs)
     if best.problem is not None:
         best.problem.tried = tuple(tried)
         return best
     return replace(best, history=_told(first, best, tried))
 
 
-def _best(
-    first: Try, how: Relaxing, mesh: PadMesh | None, run: Callable[[Scene, Plan], Try]
-) -> tuple[Try, list[str]]:
+def changes(
+    one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = tuple(_COMPARED)
+) -> dict[str, float]:
+    """Largest difference of each quantity at the ends of the legs, over its largest value there.
+
+    A side force is taken over no less than a tenth of the force: a thousandth of that is a tenth
+    of what forces must balance within.
+
+    Examples
+    --------
+    >>> press = {
+    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    ...     "motion": [{"press_to_force": "20 gf"}],
+    ...     "accuracy": "draft",
+    ... }
+    >>> history = simulate(press)
+    >>> changes(history, history, ["contact_width"])
+    {'contact_width': 0.0}
+    """
+    ends = leg_ends(one), leg_ends(other)
+    scale = {name: max(float(np.abs(ends[0][name]).max()), 1e-12) for name in names}
+    if scale.keys() >= {"force", "tangential_force"}:
+        scale["tangential_force"] = max(scale["tangential_force"], 0.1 * scale["force"])
+    return {
+        name: float(np.abs(ends[0][name].values - ends[1][name].values).max() / most)
+        for name, most in scale.items()
+    }
+
+
+@dataclass
+class _Runs:
+    """Further runs; ``left``: the work that they may still take together."""
+
+    left: float
+    attempt: Callable[[Scene, Plan], Try]
+
+    def __call__(self, remedy: Remedy, best: Try) -> Try:
+        """A remedy's run, which says what is relaxed and takes no more than half of what is left.
+        ``best``: the run before, which an interrupt leaves whole.
+        """
+        try:
+            found = self.attempt(remedy.scene, _saying(remedy, self.left / 2))
+        except KeyboardInterrupt as stop:
+            if best.problem is None:
+                vars(stop)["dataset"] = best.history
+            raise
+        self.left -= found.plan.nodes**POWER * found.factorisations
+        return found
+
+
+def _compared(first: Try, how: Relaxing, runs: _Runs) -> Try:
+    """A run that met a corner; or the same with steps half as long, where those change it and still
+    shorter ones do not. Its notes say what they changed.
+    """
+    best, said = first, []
+    by_hand = first.scene.by_hand.steps and how.relax != "everything"
+    while best.rank <= LABOURS and best.plan.checked and best.history.attrs["singular"]:
+        shorter = runs(next(_steps(best.scene, best.plan, everything=True)), best)
+        if shorter.problem is not None:
+            said.append(f"with steps half as long it breaks off ({shorter.why})")
+        else:
+            change = changes(best.history, shorter.history)
+            most = max(change, key=change.__getitem__)
+            said.append(
+                f"steps half as long changed its {_COMPARED[most]} by {percent(change[most])}"
+            )
+            if change[most] <= MOST_CHANGE:
+                better = shorter if shorter.rank < best.rank and not by_hand else best
+                return _noting(better, ", then ".join(said))
+        if shorter.problem is not None or by_hand or best is not first:
+            doubt = f"{', then '.join(said)}: repeat with a finer mesh to check"
+            return _noting(best, doubt, doubted=True)
+        best = shorter
+    return best
+
+
+def _noting(found: Try, note: str, doubted: bool = False) -> Try:
+    """A run with one more note, which is a doubt or is none."""
+    known = found.history.attrs
+    more = {"notes": json.dumps([*json.loads(known["notes"]), note])}
+    if doubted:
+        more["doubts"] = json.dumps([*json.loads(known.get("doubts", "[]")), note])
+    return replace(found, history=found.history.assign_attrs(more))
+
+
+def _best(first: Try, how: Relaxing, mesh: PadMesh | None, runs: _Runs) -> tuple[Try, list[str]]:
     """The best of a run in trouble and of the relaxed ones; what was tried, in words."""
     tried: list[str] = []
-    best, left = first, how.budget * _work(first)
+    best = first
     for remedy in remedies(first, how, mesh):
-        if _easy(remedy.plan) > left / 2:  # the other half is for what comes after it
+        if _easy(remedy.plan) > runs.left / 2:  # the other half is for what comes after it
             tried.append(f"{remedy.said} (not tried: it would cost too much)")
             continue
         try:
             check_memory(remedy.scene, remedy.plan.nodes, remedy.plan.outputs, RULES)
-            found = run(remedy.scene, _saying(remedy, left / 2))
-        except KeyboardInterrupt as stop:
-            if best.problem is None:
-                vars(stop)["dataset"] = best.history  # the run before is whole
-            raise
+            found = _compared(runs(remedy, best), how, runs)
         except (MeshError, OutlineError, PlanError, ReceptorError) as reason:
             tried.append(f"{remedy.said} (not tried: {reason})")
             continue
-        left -= found.plan.nodes**POWER * found.factorisations
         tried.append(remedy.said)
         if found.rank < best.rank:
             best = found
@@ -451,10 +542,9 @@ def _changed(first: Try, history: xr.Dataset) -> str:
     """What the relaxed run ends with that is not what the first one did."""
     if first.problem is not None:
         return f"it had reached t = {first.problem.time:.6g} s"
-    before, after = (leg_ends(each).isel(time=-1) for each in (first.history, history))
-    said = []
-    for word, name in _COMPARED.items():
-        old, new = float(before[name]), float(after[name])
-        if abs(new - old) > _TOLD * max(abs(old), abs(new), np.finfo(float).tiny):
-            said.append(f"the {word} by {percent(abs(new - old) / max(abs(old), 1e-300))}")
+    said = [
+        f"the {_COMPARED[name]} by {percent(change)}"
+        for name, change in changes(first.history, history).items()
+        if change > _TOLD
+    ]
     return f"that changed {', '.join(said)}" if said else "that changed nothing by half a per cent"

@@ -407,9 +407,8 @@ def _run(history: xr.Dataset) -> dict[str, Any]:
         out["relaxed"] = json.loads(attributes["relaxed"])
     discretisation = plan["discretisation"].items()
     out |= {name: value for name, value in discretisation if name.startswith("profile_")}
-    if notes:
-        at_end = any("reached the end" in note for note in notes)
-        out["contact_reached_profile_end"] = at_end
+    if any("reached the end" in note for note in notes):
+        out["contact_reached_profile_end"] = True
     return out | {"notes": notes}
 
 

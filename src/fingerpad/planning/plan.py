@@ -202,6 +202,7 @@ def _planned(
         unresolved_edge=unresolved_edge(case, mesh.edge_at_edges),
         errors=mesh.errors,
         receptor_height=mesh.receptor_height,
+        checked=scene.relaxing is not None and (case.moves or scene.stimulus.irregular),
     )
 
 

@@ -29,6 +29,10 @@ from fingerpad.specimen.pad import MeshSize
 
 _OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
+_CHECKED = (
+    "which way the skin passes {} may depend on the steps; the run is repeated with steps half as "
+    "long, for twice its cost"
+)
 _KEYS = {
     "state": "moduli_state",
     "contact": "contact_estimate_SI",
@@ -111,6 +115,9 @@ class Plan:
         On an external mesh the largest height of elements that receptors are in, over their depth.
     relaxed
         What a run in trouble has relaxed of it.
+    checked
+        Whether a run in which the skin meets a corner is compared with one whose steps are
+        half as long.
     """
 
     effects: dict[str, Effect]
@@ -144,6 +151,7 @@ class Plan:
     errors: dict[str, float] = field(default_factory=dict)
     receptor_height: float | None = None
     relaxed: Relaxed = Relaxed()
+    checked: bool = False
 
     def parts(self, scene: Scene) -> Parts:
         """What the effects that are on make of the parts of a simulation of ``scene``."""
@@ -285,6 +293,8 @@ class Plan:
             lines.append(self.missed())
         lines += [f"note: {note}" for note in self.surface.notes]
         lines += [f"relaxed: {said}" for said in self.relaxed.said]
+        if self.checked and self.unbounded:
+            lines.append(f"checked: {_CHECKED.format(self.unbounded.text)}")
         lines.append(f"predicted cost: {self.predicted_cost_s:.2g} s of one core")
         return Group(effects, details, *whole, *map(Text, lines))
 

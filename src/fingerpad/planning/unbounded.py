@@ -107,7 +107,7 @@ def in_words(profile: Profile, x: np.ndarray) -> tuple[str, ...]:
     """Corners at x (k,) m in words, one phrase a kind."""
     if not len(x):
         return ()
-    at_end = np.isin(x, profile.reach) & (not profile.edges)
+    at_end = np.isin(x, profile.known)
     corner, what = "corner", ""
     if profile.edges:
         corner, what = "edge", "" if profile.unbounded else " finer than the mesh"

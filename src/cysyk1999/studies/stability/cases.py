@@ -20,7 +20,7 @@ import yaml
 from cysyk1999.studies.common.documents import CONFIG, FLAT, cylinder, scene_of
 from cysyk1999.studies.common.meshes import corners_only, distorted, split
 from cysyk1999.studies.stability.combining import drawn, listed
-from fingerpad.healing import MOST_CUTS, MOST_FACTORISATIONS
+from fingerpad.healing import MOST_CHANGE, MOST_CUTS, MOST_FACTORISATIONS
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for, write_pad
@@ -61,7 +61,7 @@ class Limits:
     complementarity: float = limit(1e-3, "complementarity within {:g}")
     det_f: float = limit(0.1, "det F above {:g}")
     checkerboard: float = limit(0.05, "checkerboard index up to {:g}")
-    halving: float = limit(0.05, "half the step changes it by up to {:.0%}")
+    halving: float = limit(MOST_CHANGE, "half the step changes it by up to {:.0%}")
     balance: float = limit(1e-3, "forces balanced within {:g}")
     symmetry: float = limit(1e-3, "its own mirror image within {:g}")
     effort: float = limit(4, "up to {:g} times its easy neighbour's iterations")

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from cysyk1999.studies.stability.cases import Limits
+from fingerpad.healing import changes
 from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, states_found
 from fingerpad.simulation import Simulation
@@ -72,19 +73,8 @@ def measures(history: xr.Dataset) -> dict[str, float]:
 
 
 def difference(one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = ENDS) -> float:
-    """Largest difference at the ends of the legs, each quantity over its largest value there.
-
-    A side force is taken over no less than a tenth of the force: a thousandth of that is a tenth
-    of what forces must balance within.
-    """
-    ends = leg_ends(one), leg_ends(other)
-    scale = {name: max(float(np.abs(ends[0][name]).max()), 1e-12) for name in names}
-    if scale.keys() >= {"force", "tangential_force"}:
-        scale["tangential_force"] = max(scale["tangential_force"], 0.1 * scale["force"])
-    apart = (
-        np.abs(ends[0][name].values - ends[1][name].values).max() / scale[name] for name in scale
-    )
-    return float(max(apart))
+    """Largest of the changes from one run of a case to another."""
+    return max(changes(one, other, names).values())
 
 
 def excess(measured: Mapping[str, float], limits: Limits) -> dict[str, str]:

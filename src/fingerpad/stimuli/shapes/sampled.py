@@ -205,7 +205,16 @@ class Points(Curve):
         super().__init__(x, y, bend)
         self.known = tuple(map(float, self.samples[0][[0, -1]]))
         if ends == "open":
-            self.reach = self.known
+            self.reach = self._open_reach(x, rounding)
+
+    def _open_reach(self, x, rounding):
+        """First and last place (m) that can touch first: an end that falls goes on to fall until
+        its rounding (radius in m) turns it away. x: (n,) m, of the profile with its ends.
+        """
+        (first, *_, last), y = self.known, self.samples[1]
+        left = x[1] if rounding and y[0] < y[1] else first
+        right = x[-2] if rounding and y[-1] < y[-2] else last
+        return float(left), float(right)
 
     def _end(self, x, y, rounding):
         """x, y (k,) m and curvature (k,) 1/m of the pieces that follow the last of two samples on
