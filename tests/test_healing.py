@@ -287,6 +287,13 @@ def test_a_true_edge_gets_a_fillet_that_the_mesh_can_resolve():
     assert "fillet" in last.said and not last.plan.unbounded
 
 
+@pytest.mark.parametrize(("profile", "smoothed"), [("noisy_profile", True), ("hole", False)])
+def test_a_profile_is_smoothed_where_that_leaves_its_shape(profile, smoothed):
+    """Not a hole, which it would fill."""
+    stimulus = {"shape": "sampled", "csv": str(STEEP_FLANKS.with_stem(profile))}
+    assert ("stimulus" in kinds(PRESS | {"stimulus": stimulus})) == smoothed
+
+
 # -- a mesh of one's own, divided ---
 
 

@@ -44,6 +44,8 @@ POWER = 1.5
 """Of the nodes, with which the cost of a matrix grows (George 1973)."""
 TIP = 2.0
 """Edges of the skin that the radius of a relaxed edge or tip is long."""
+MOST_MOVED = 0.1
+"""Of its height, by which smoothing may move a profile: beyond, it is another surface."""
 FINE, LABOURS, DOUBTS, BROKE_OFF = range(4)
 WORDS = ("ran well", "laboured", "doubted itself", "broke off")
 _COMPARED = {
@@ -479,6 +481,8 @@ def _blunter(scene: Scene, plan: Plan, everything: bool) -> Iterator[Remedy]:
             blunter = scene.varied(changes)
             following = planned(blunter)
         except (SceneError, PlanError, MeshError):
+            continue
+        if following.surface.moved > MOST_MOVED * np.ptp(getattr(scene.stimulus, "y", 0.0)):
             continue
         following = replace(
             following,
