@@ -16,7 +16,7 @@ import numpy as np
 from fingerpad.benchmark.rows import datasets
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import BENT, SOONEST
-from fingerpad.emulator.model import LOGARITHMIC, ON_BORDER, PLACES, STRESSES, Emulator
+from fingerpad.emulator.model import ON_BORDER, PLACES, STRESSES, Emulator, in_logarithm
 from fingerpad.emulator.question import FLAT, borders, looked_up
 from fingerpad.receptors.laws import THESIS_RATE
 
@@ -82,7 +82,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
     groups = {
         name: {
             "shape": list(group.shape),
-            "logarithmic": name in LOGARITHMIC,
+            "logarithmic": in_logarithm(name, emulator.turned),
             "stress": name in STRESSES,
             "mean": _packed(group.mean),
             "rows": _packed(group.rows),

@@ -15,7 +15,7 @@ import numpy as np
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import basis, exponents, kernel
-from fingerpad.emulator.model import ENERGY, LOGARITHMIC, SCALARS, SLID, Emulator, Group
+from fingerpad.emulator.model import ENERGY, SCALARS, SLID, Emulator, Group, in_logarithm
 from fingerpad.emulator.question import Knob, scaled
 from fingerpad.emulator.samples import Samples, Swept
 
@@ -25,7 +25,8 @@ TRUNCATED = 5e-4
 """Root mean square of what principal components may leave of a quantity (of its logarithm, or of
 its scale).
 """
-MOST_PARTS = 14
+MOST_PARTS, MOST_PARTS_SLID = 14, 40
+"""Principal components of a quantity, and of one of a stroke, along which the contact moves."""
 DEGREE = 2
 """Of the trend."""
 FREE = 100.0
@@ -202,7 +203,8 @@ def _fit(swept: Swept) -> Emulator:
     at = scaled(knobs, samples.points)
     powers = exponents(len(knobs), DEGREE)
     made = Emulator(knobs, swept.base, swept.moments, grids, powers, at, {}, about)
-    parts = {name: Parts.of(v, name) for name, v in samples.values.items() if name != ENERGY}
+    most, turned = MOST_PARTS_SLID if made.moments.slid else MOST_PARTS, made.turned
+    parts = {n: Parts.of(v, n, most) for n, v in samples.values.items() if n != ENERGY}
     scales = lengths(swept)
     every, terms = np.arange(len(at)), terms_of(at, at, scales)
     groups = {name: _group(terms, every, p, scales) for name, p in parts.items()}
@@ -210,9 +212,11 @@ def _fit(swept: Swept) -> Emulator:
     for k, depth in enumerate(np.unique(of)):
         kept = {layer: np.flatnonzero(layers[:, k] == layer) for layer in np.unique(layers[:, k])}
         values = samples.values[ENERGY][..., of == depth]
-        parts = {layer: Parts.of(values[rows], ENERGY) for layer, rows in kept.items()}
-        most = max(kept, key=lambda layer: len(kept[layer]))
-        scales = _scales(at[kept[most]], [parts[most].scores])
+        parts = {
+            layer: Parts.of(values[rows], ENERGY, most, turned) for layer, rows in kept.items()
+        }
+        main = max(kept, key=lambda layer: len(kept[layer]))
+        scales = _scales(at[kept[main]], [parts[main].scores])
         terms = terms_of(at, at, scales)
         for layer, rows in kept.items():
             if len(rows) > len(knobs) + 1:
@@ -247,14 +251,16 @@ class Parts:
     scores: np.ndarray
 
     @classmethod
-    def of(cls, values: np.ndarray, name: str) -> Parts:
+    def of(
+        cls, values: np.ndarray, name: str, most: int = MOST_PARTS, turned: bool = False
+    ) -> Parts:
         """Of values (n, ...)."""
         flat = values.reshape(len(values), -1)
-        target = np.log(flat) if name in LOGARITHMIC else flat
+        target = np.log(flat) if in_logarithm(name, turned) else flat
         mean = target.mean(axis=0)
         own, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
         rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
-        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
+        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, most, len(sizes))
         return cls(values.shape[1:], target, mean, rows[:count], own[:, :count] * sizes[:count])
 
 
@@ -299,7 +305,10 @@ def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
     if slid:
         off, band = found[SLID[1]] - unseen.values[SLID[1]], emulator.groups[SLID[1]].band
         add("tangential_force", 1 + off[:, top:], np.abs(off) <= band)
-    inside = np.abs(found[ENERGY] - unseen.values[ENERGY]) <= emulator.energy_band(unseen.points)
+    roots = found[ENERGY], unseen.values[ENERGY]
+    if in_logarithm(ENERGY, emulator.turned):
+        roots = np.log(roots[0]), np.log(roots[1])
+    inside = np.abs(roots[0] - roots[1]) <= emulator.energy_band(unseen.points)
     for depth in np.unique(grids["receptor_depth"]):
         at = grids["receptor_depth"] == depth
         aside = np.abs(grids["receptor_offset"])

@@ -48,9 +48,16 @@ NODES = 161
 """Skin nodes of an answer."""
 ON_BORDER = 1e-8
 """m; a receptor this near a border belongs to the layer below, as the solver has it."""
-FORMAT = 4
+FORMAT = 5
 _CHUNK = 500
 _PARTS = ("mean", "rows", "coefficients", "band", "scales")
+
+
+def in_logarithm(name: str, turned: bool) -> bool:
+    """Whether the logarithm of a quantity is emulated. Below a point of a body of revolution the
+    energy falls with the square of the depth, so over many orders of magnitude.
+    """
+    return name in LOGARITHMIC or (turned and name.startswith(ENERGY))
 
 
 @dataclass(frozen=True)
@@ -242,7 +249,7 @@ class Emulator:
                 if alike not in known:
                     known[alike] = self.terms(some, group.scales)
                 value = mean + group.at(known[alike], rows)
-                parts[name].append(np.exp(value) if name in LOGARITHMIC else value)
+                parts[name].append(np.exp(value) if in_logarithm(name, self.turned) else value)
         shapes = {n: (-1, *self.groups[n].shape) for n in names}
         if weights is not None:
             wanted = (n for n in names if n != "estimated_error")
@@ -295,7 +302,9 @@ class Emulator:
         return {ENERGY: found}
 
     def energy_band(self, points: np.ndarray) -> np.ndarray:
-        """Half width (n, moments, receptors) of the band of ``energy_root`` at points."""
+        """Half width (n, moments, receptors) of the band of ``energy_root`` at points, or of its
+        logarithm.
+        """
         bands = {
             name: np.broadcast_to(
                 self.groups[name].band.reshape(self.groups[name].shape),
@@ -362,6 +371,7 @@ class Emulator:
             data[f"{name}_error"] = "time", values * bands[name]
         wanted = self._receptors(asked)
         root, width = found["energy_root"][:, wanted], bands["energy_root"][:, wanted]
+        width = width * root if in_logarithm(ENERGY, turned) else width
         size = asked.modulus * ((load / asked.modulus) ** 2)[:, None]
         energy, band = size * root**2, size * width * (2 * np.abs(root) + width)
         data["strain_energy_density"] = ("time", "receptor"), energy
@@ -414,7 +424,8 @@ class Emulator:
                 continue
             band = np.tensordot(near, group.band.reshape(group.shape), 1)
             found[name] = known * (np.expm1(band) if name in LOGARITHMIC else band)
-        found[ENERGY] = known * np.tensordot(near, self.energy_band(asked.point[None])[0], 1)
+        band = np.tensordot(near, self.energy_band(asked.point[None])[0], 1)
+        found[ENERGY] = known * (np.expm1(band) if in_logarithm(ENERGY, self.turned) else band)
         return found
 
     def _receptors(self, asked: Question) -> list[int]:

@@ -156,7 +156,8 @@ function answer(state) {
   const loads = moments.map(m => m.share * state.values[FORCE] / state.modulus / model.contact_length);
   found.strain_energy_density = found.energy_root.map((row, m) => row.map(r => state.modulus * (r * loads[m]) ** 2));
   const roots = found.energy_root[moments.length - 1].map(Math.abs);
-  found.strain_energy_density_band = found.energy_root_band.map((b, k) => b * (2 * roots[k] + b) / roots[k] ** 2);
+  const widths = found.energy_root_band.map((b, k) => (model.turned ? b * roots[k] : b));
+  found.strain_energy_density_band = widths.map((b, k) => b * (2 * roots[k] + b) / roots[k] ** 2);
   found.load = state.values[FORCE] / model.contact_length;
   found.rate = rates(found);
   return found;
