@@ -483,7 +483,7 @@ def test_a_file_gives_the_same_answers(pad, tmp_path):
     xr.testing.assert_identical(again.predict(scene()), pad.predict(scene()))
     assert "code_sha256" in again.about["provenance"]
     with np.load(tmp_path / "pad.emulator", allow_pickle=False) as found:
-        assert json.loads(str(found["about"]))["format"] == 4
+        assert json.loads(str(found["about"]))["format"] == 5
 
 
 def test_the_commands_write_and_refuse(folder, tmp_path, capsys):
