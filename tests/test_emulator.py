@@ -3,6 +3,7 @@ page.
 """
 
 import json
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from sklearn.gaussian_process.kernels import Matern
 
 import fingerpad
 from fingerpad.cli import main
-from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel
+from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel, local_size
 from fingerpad.emulator.explorer import page
 from fingerpad.emulator.model import load_emulator
 from fingerpad.sweeps.design import Design
@@ -201,6 +202,30 @@ def test_the_band_holds_what_it_says_of_unseen_scenes(tmp_path):
     assert float(found.contact_width_error) < 0.2 * float(found.contact_width)
 
 
+def test_the_band_is_wider_in_the_corners_of_the_box(tmp_path):
+    """Where few scenes are near; one band for the whole box is too narrow there."""
+    few, held, widths = fingerpad.emulate(made_up(tmp_path / "few", 48)), [], []
+    for curvature, force, rate in product((50.0, 1300.0), (5.0, 60.0), (20.0, 80.0)):
+        found = few.predict(scene(curvature, force, rate, 1.0)).isel(time=-1)
+        depth, half, _ = truth(curvature, force * GF, rate * GF, force / rate + 1.0)
+        held.append(abs(found.indentation_depth - depth) <= found.indentation_depth_error)
+        held.append(abs(found.contact_width - 2 * half) <= found.contact_width_error)
+        widths.append(float(found.contact_width_error / found.contact_width))
+    middle = few.predict(scene(400.0, 17.0, 40.0, 1.0)).isel(time=-1)
+    assert np.mean(held) > 0.6
+    assert max(widths) > 4 * float(middle.contact_width_error / middle.contact_width)
+
+
+def test_what_is_said_of_a_place_comes_from_scenes_nearby():
+    centres, sizes = np.array([[-1.0], [-0.9], [0.9], [1.0]]), np.array([1.0, 2.0, 8.0, np.nan])
+    low, high = local_size(np.array([[-0.95], [0.95]]), centres, sizes)
+    every = np.mean(sizes[:3] ** 2)
+    assert low**2 == pytest.approx(0.9 * 2.5 + 0.1 * every, rel=1e-3)
+    assert high**2 == pytest.approx(0.9 * 64 + 0.1 * every, rel=1e-3)
+    others = local_size(centres, centres, sizes, others=True)
+    assert others[0] ** 2 == pytest.approx(0.9 * 4 + 0.1 * every, rel=1e-2) and np.isnan(others[3])
+
+
 def test_the_low_end_of_an_even_range_is_emulated_as_well(tmp_path):
     """On a logarithm of curvatures no scene would be near the flattest."""
     wide = OVER | {"stimulus.curvature": {"range": ["0.01 1/m", "1300 1/m"]}}
@@ -228,6 +253,8 @@ def test_another_sweep_judges_it(pad, tmp_path):
     other = made_up(tmp_path / "other", 8, over={k: OVER[k] for k in list(OVER)[:2]})
     with pytest.raises(fingerpad.SceneError, match="other: is over .*; allowed: .*rate"):
         fingerpad.emulate(few, other)
+    with pytest.raises(fingerpad.SceneError, match="of the sweep itself; allowed: another seed"):
+        fingerpad.emulate(few, few)
 
 
 def test_it_grows_where_it_knows_least_until_it_is_good_or_the_budget_is_spent(
@@ -432,6 +459,10 @@ def test_a_slide_that_keeps_the_depth_or_differs_in_length_is_refused(tmp_path):
         (scene() | {"stimulus": {"shape": "bar", "width": "2 mm"}}, 'stimulus.shape: "bar"'),
         (scene() | {"motion": [{"press_to_force": "20 gf"}, {"hold": "1 s"}]}, "rate: left out"),
         (
+            scene() | {"motion": [{"press_to_force": "20 gf"}, {"slide": "1 mm"}]},
+            "press_to_force, then slide with keep is outside",
+        ),
+        (
             scene(specimen={"layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}}),
             "allowed: left out, as in the sweep",
         ),
@@ -442,6 +473,26 @@ def test_what_was_not_simulated_is_refused(pad, changed, key):
         pad.predict(changed)
     text = str(caught.value)
     assert key in text and "; allowed: " in text and "\n" not in text and "null" not in text
+
+
+def test_an_answer_knows_its_scene_and_says_what_only_a_run_knows(pad):
+    found = pad.predict(scene())
+    assert found.fingerpad.scene.stimulus.curvature == 210
+    assert float(found.fingerpad.force_N[-1]) == pytest.approx(20 * GF)
+    assert (found.peak_pressure >= found.centre_pressure).all()
+    for ask in (fingerpad.summary, lambda of: of.fingerpad.plan, lambda of: of.fingerpad.errors):
+        with pytest.raises(AttributeError, match=r"emulator: has no .*; allowed: a history of"):
+            ask(found)
+
+
+@pytest.mark.parametrize(
+    ("points", "names"),
+    [([210.0, 0.2, 0.4], None), ([[210.0, 0.2]], None), ([[210.0, 0.2, 0.4]], "contact_width")],
+)
+def test_points_and_names_of_another_form_are_refused(pad, points, names):
+    with pytest.raises(ValueError, match="; allowed: "):
+        pad.values(points, names)
+    assert len(repr(pad)) < 200 and "press" in repr(pad) or "force" in repr(pad)
 
 
 def test_outside_the_box_must_be_asked_for_and_has_no_band(pad):

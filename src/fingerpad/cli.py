@@ -230,9 +230,9 @@ def _parser() -> argparse.ArgumentParser:
     emulate("--unseen", metavar="SWEEP_DIR", type=Path, help=judges)
     until = "add scenes where it knows least until 95 %% are within X, such as 0.01"
     emulate("--grow", metavar="X", type=float, help=until)
-    emulate("--scenes", metavar="N", type=int, default=500, help="most to add (default: 500)")
-    late = "none is begun later (default: no limit)"
-    emulate("--seconds", metavar="S", type=float, default=float("inf"), help=late)
+    emulate("--scenes", metavar="N", type=int, help="with --grow: most to add (default: 500)")
+    late = "with --grow: none is begun later (default: no limit)"
+    emulate("--seconds", metavar="S", type=float, help=late)
     emulate("--cores", **count, help="processes at a time (default: 1)")
     explore("emulator", metavar="FILE", type=Path, help="the file of the emulator")
     file: dict[str, Any] = {"metavar": "FILE", "type": Path, "required": True}

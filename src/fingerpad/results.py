@@ -278,7 +278,7 @@ def scene_of(history: xr.Dataset) -> Scene:
 
     Of an external mesh only the name is known. The scene of a text is read once.
     """
-    return _scene(history.attrs["scene"])
+    return _scene(of_a_run(history, "scene"))
 
 
 @lru_cache(maxsize=256)
@@ -290,6 +290,17 @@ def leg_ends(history: xr.Dataset) -> xr.Dataset:
     """The history at the last output of each leg."""
     leg = history.leg.values[1:]
     return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
+
+
+def of_a_run(history: xr.Dataset, name: str) -> str:
+    """An attribute that only a run knows. Raises AttributeError if an emulator made the history."""
+    try:
+        return history.attrs[name]
+    except KeyError:
+        title = history.attrs.get("title", "this dataset")
+        raise AttributeError(
+            f"{title}: has no {name.replace('_', ' ')}; allowed: a history of fingerpad.simulate"
+        ) from None
 
 
 def states_found(history: xr.Dataset) -> int:
@@ -323,7 +334,8 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     ]
     ends = leg_ends(history)
     errors, unbounded = (
-        json.loads(history.attrs[f"{name}_of_legs"]) for name in ("estimated_error", "unbounded_at")
+        json.loads(of_a_run(history, f"{name}_of_legs"))
+        for name in ("estimated_error", "unbounded_at")
     )
     totals = {
         "legs": [
@@ -634,7 +646,7 @@ class HistoryAccessor:
     @property
     def plan(self) -> Plan:
         """The plan of the run; of its last run, where a tolerance took several."""
-        return Plan.from_dict(json.loads(self._history.attrs["plan"]))
+        return Plan.from_dict(json.loads(of_a_run(self._history, "plan")))
 
     @property
     def scene(self) -> Scene:
@@ -660,7 +672,7 @@ class HistoryAccessor:
         attributes = self._history.attrs
         asked = float(attributes.get("asked_error", np.nan))
         return {
-            "legs": json.loads(attributes["estimated_error_of_legs"]),
+            "legs": json.loads(of_a_run(self._history, "estimated_error_of_legs")),
             "largest": float(attributes["largest_error"]),
             "covers": attributes["error_covers"],
             "asked": asked if np.isfinite(asked) else None,

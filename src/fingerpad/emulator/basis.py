@@ -15,6 +15,10 @@ SOONEST = 0.05
 """s; holds are interpolated in log(1 + time / SOONEST)."""
 
 
+NEARBY = 0.3
+"""Lengths over which the errors of scenes tell of a place; a knob's range is 2."""
+FROM_ALL = 0.1
+"""Share that scenes everywhere have in what is said of a place."""
 _AT_ONCE = 128
 """Points at a time, so that what is between stays in the cache."""
 
@@ -90,6 +94,29 @@ def kernel(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.nd
         np.exp(far, out=far)
         far *= falls
     return found
+
+
+def local_size(
+    points: np.ndarray, centres: np.ndarray, sizes: np.ndarray, others: bool = False
+) -> np.ndarray:
+    """Root mean square of sizes (m,) of scenes at centres (m, knobs) around points: (n,).
+
+    Scenes count by how near they are; a tenth is that of all scenes. ``others``: the points are the
+    centres, and a scene says nothing of itself. A size that is NaN is that of no scene.
+    """
+    known = np.isfinite(sizes)
+    near = kernel(points, centres[known], np.full(points.shape[1], NEARBY))
+    if others:
+        near = near[known]
+        np.fill_diagonal(near, 0.0)
+    squares = sizes[known] ** 2
+    around = near @ squares / np.maximum(near.sum(axis=1), 1e-300)
+    found = np.sqrt((1 - FROM_ALL) * around + FROM_ALL * squares.mean())
+    if not others:
+        return found
+    every = np.full(len(sizes), np.nan)
+    every[known] = found
+    return every
 
 
 def cubic_weights(grid: np.ndarray, at: np.ndarray) -> np.ndarray:

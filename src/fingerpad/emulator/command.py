@@ -8,6 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from fingerpad.documents import SceneError
 from fingerpad.emulator.explorer import page
 from fingerpad.emulator.fitting import emulate
 from fingerpad.emulator.growing import grow
@@ -17,10 +18,13 @@ from fingerpad.files import write_text
 
 def emulate_folder(options: Any) -> None:
     """Fit an emulator, write it, and show how far off it is. Raises SceneError."""
+    budget = {n: v for n in ("scenes", "seconds") if (v := getattr(options, n)) is not None}
     if options.grow is None:
+        for name in budget:
+            raise SceneError(f"--{name}: says when growing ends; allowed: with --grow")
         emulator = emulate(options.folder, options.unseen)
     else:
-        budget = {"scenes": options.scenes, "seconds": options.seconds, "cores": options.cores}
+        budget["cores"] = options.cores
         progress = None if options.quiet else _tell
         emulator = grow(
             options.folder, options.grow, unseen=options.unseen, progress=progress, **budget
@@ -37,7 +41,8 @@ def _tell(added: int, error: float) -> None:
 def _show(emulator: Emulator, out: Path) -> None:
     console = Console(highlight=False)
     held_out = emulator.about["held_out"]
-    title = f"{held_out[0]['scenes']} scenes that the fit did not see"
+    count = held_out[0]["scenes"]
+    title = f"{count} scene{'s' * (count != 1)} that the fit did not see"
     table = Table(title=title, title_justify="left")
     for head in ("quantity", "median error", "95 % within", "within the band"):
         table.add_column(head, justify="left" if head == "quantity" else "right")

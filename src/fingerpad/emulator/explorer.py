@@ -15,7 +15,7 @@ import numpy as np
 
 from fingerpad.benchmark.rows import datasets
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import BENT, SOONEST
+from fingerpad.emulator.basis import BENT, FROM_ALL, NEARBY, SOONEST
 from fingerpad.emulator.model import ON_BORDER, PLACES, STRESSES, Emulator, in_logarithm
 from fingerpad.emulator.question import FLAT, borders, looked_up
 from fingerpad.receptors.laws import THESIS_RATE
@@ -89,6 +89,7 @@ def _model(emulator: Emulator) -> dict[str, Any]:
             "coefficients": _packed(group.coefficients),
             "band": _packed(group.band),
             "scales": _numbers(group.scales),
+            "missed": _packed(group.missed),
         }
         for name, group in emulator.groups.items()
     }
@@ -105,6 +106,8 @@ def _model(emulator: Emulator) -> dict[str, Any]:
         "powers": emulator.powers.tolist(),
         "centres": _packed(emulator.centres),
         "bent": BENT,
+        "nearby": NEARBY,
+        "from_all": FROM_ALL,
         "on_border": ON_BORDER,
         "places": _numbers(PLACES),
         "grids": {name: _numbers(grid) for name, grid in emulator.grids.items()},

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, exponents, kernel
+from fingerpad.emulator.basis import basis, exponents, kernel, local_size
 from fingerpad.emulator.model import ENERGY, SCALARS, SLID, Emulator, Group, in_logarithm
 from fingerpad.emulator.question import Knob, scaled
 from fingerpad.emulator.samples import Samples, Swept
@@ -81,11 +81,15 @@ def emulate(sweep: str | Path, unseen: str | Path | None = None) -> Emulator:
 
 
 def judge_by(swept: Swept, unseen: str | Path) -> Samples:
-    """What another sweep of the same scene over the same keys shows. Raises SceneError."""
+    """What another sweep of the same scene over the same keys shows. Raises SceneError: also where
+    it shares a scene with this one.
+    """
     both = swept.with_more(Path(unseen)).samples
     found = both.only(np.arange(len(swept.samples.points), len(both.points)))
     if not len(found.points):
         raise SceneError(f"{unseen}: has no scene that can be judged; allowed: one or more")
+    if {*map(tuple, found.points)} & {*map(tuple, swept.samples.points)}:
+        raise SceneError(f"{unseen}: has scenes of the sweep itself; allowed: another seed")
     return found
 
 
@@ -207,7 +211,7 @@ def _fit(swept: Swept) -> Emulator:
     parts = {n: Parts.of(v, n, most) for n, v in samples.values.items() if n != ENERGY}
     scales = lengths(swept)
     every, terms = np.arange(len(at)), terms_of(at, at, scales)
-    groups = {name: _group(terms, every, p, scales) for name, p in parts.items()}
+    groups = {name: _group(terms, at, every, p, scales) for name, p in parts.items()}
     layers, of = made.layers(samples.points), grids["receptor_depth"]
     for k, depth in enumerate(np.unique(of)):
         kept = {layer: np.flatnonzero(layers[:, k] == layer) for layer in np.unique(layers[:, k])}
@@ -220,7 +224,7 @@ def _fit(swept: Swept) -> Emulator:
         terms = terms_of(at, at, scales)
         for layer, rows in kept.items():
             if len(rows) > len(knobs) + 1:
-                groups[f"{ENERGY}_{k}_{layer}"] = _group(terms, rows, parts[layer], scales)
+                groups[f"{ENERGY}_{k}_{layer}"] = _group(terms, at, rows, parts[layer], scales)
     return replace(made, groups=groups)
 
 
@@ -264,8 +268,12 @@ class Parts:
         return cls(values.shape[1:], target, mean, rows[:count], own[:, :count] * sizes[:count])
 
 
-def _group(terms: np.ndarray, rows: np.ndarray, parts: Parts, scales: np.ndarray) -> Group:
-    """A quantity that some of the scenes have, at the terms (n, terms) of all."""
+def _group(
+    terms: np.ndarray, at: np.ndarray, rows: np.ndarray, parts: Parts, scales: np.ndarray
+) -> Group:
+    """A quantity that some of the scenes have, at the terms (n, terms) of all, which are at (n,
+    knobs).
+    """
     trend = terms.shape[1] - len(terms)
     kept = np.concatenate([np.arange(trend), trend + rows])
     own, some = terms[np.ix_(rows, kept)], rows[:SEARCHED]
@@ -275,9 +283,14 @@ def _group(terms: np.ndarray, rows: np.ndarray, parts: Parts, scales: np.ndarray
     coefficients = np.zeros((terms.shape[1], found.shape[1]))
     coefficients[kept] = found
     miss = parts.target - parts.mean - (parts.scores - off) @ parts.rows
+    usual = np.sqrt((miss**2).mean(axis=0))
+    usual = np.maximum(usual, max(1e-9 * usual.max(), 1e-300))
+    missed_by = np.full(len(terms), np.nan)
+    missed_by[rows] = np.sqrt(((miss / usual) ** 2).mean(axis=1))
+    around = local_size(at, at, missed_by, others=True)[rows]
     rank = min(int(np.ceil((len(miss) + 1) * COVERED)), len(miss)) - 1
-    band = np.sort(np.abs(miss), axis=0)[rank]
-    return Group(parts.shape, parts.mean, parts.rows, coefficients, band, scales)
+    band = np.sort(np.abs(miss) / np.maximum(around, 1e-300)[:, None], axis=0)[rank]
+    return Group(parts.shape, parts.mean, parts.rows, coefficients, band, scales, missed_by)
 
 
 def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
@@ -299,16 +312,17 @@ def judge(emulator: Emulator, unseen: Samples) -> list[dict[str, Any]]:
 
     for name in (*emulator.moments.scalars, "estimated_error"):
         ratio = found[name] / unseen.values[name]
-        inside = np.abs(np.log(ratio)) <= emulator.groups[name].band.reshape(ratio.shape[1:])
+        inside = np.abs(np.log(ratio)) <= emulator.band(name, unseen.points)
         add(name, ratio[:, top:] if name != "estimated_error" else ratio, inside)
     slid = emulator.moments.slid
     if slid:
-        off, band = found[SLID[1]] - unseen.values[SLID[1]], emulator.groups[SLID[1]].band
+        off = found[SLID[1]] - unseen.values[SLID[1]]
+        band = emulator.band(SLID[1], unseen.points)
         add("tangential_force", 1 + off[:, top:], np.abs(off) <= band)
     roots = found[ENERGY], unseen.values[ENERGY]
     if in_logarithm(ENERGY, emulator.turned):
         roots = np.log(roots[0]), np.log(roots[1])
-    inside = np.abs(roots[0] - roots[1]) <= emulator.energy_band(unseen.points)
+    inside = np.abs(roots[0] - roots[1]) <= emulator.band(ENERGY, unseen.points)
     for depth in np.unique(grids["receptor_depth"]):
         at = grids["receptor_depth"] == depth
         aside = np.abs(grids["receptor_offset"])

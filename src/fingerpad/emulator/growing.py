@@ -11,12 +11,13 @@ import csv
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, exponents, kernel
+from fingerpad.emulator.basis import basis, exponents, kernel, local_size
 from fingerpad.emulator.fitting import (
     COVERED,
     DEGREE,
@@ -42,10 +43,10 @@ CANDIDATES = 1024
 """Places that are looked at for a batch; a power of two."""
 TO_ENDS = 1.06
 """They are spread over so many times the box and brought back to its ends, which need scenes."""
+MOST_CORNERED = 6
+"""Knobs of a box whose corners are looked at too: an emulator knows least there."""
 NOISE = 1e-5
 """Variance of what the process does not explain."""
-NEARBY = 0.3
-"""Lengths over which the errors of other scenes tell of a place; a knob's range is 2."""
 
 
 def grow(
@@ -140,8 +141,9 @@ def _next(known: np.ndarray, scales: np.ndarray, off: np.ndarray, count: int) ->
 
     drawn = qmc.Sobol(len(scales), seed=len(known)).random(CANDIDATES)
     places = np.clip(TO_ENDS * (2 * drawn - 1), -1, 1)
-    near = kernel(places, known, np.full(len(scales), NEARBY))
-    errors = near @ off**2 / near.sum(axis=1)
+    if len(scales) <= MOST_CORNERED:
+        places = np.vstack([places, list(product((-1.0, 1.0), repeat=len(scales)))])
+    errors = local_size(places, known, off) ** 2
     powers = exponents(len(scales), DEGREE)
 
     def covariance(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, spread
+from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, local_size, spread
 from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up, scaled
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
@@ -50,7 +50,7 @@ ON_BORDER = 1e-8
 """m; a receptor this near a border belongs to the layer below, as the solver has it."""
 FORMAT = 5
 _CHUNK = 500
-_PARTS = ("mean", "rows", "coefficients", "band", "scales")
+_PARTS = ("mean", "rows", "coefficients", "band", "scales", "missed")
 
 
 def in_logarithm(name: str, turned: bool) -> bool:
@@ -120,9 +120,12 @@ class Group:
     ----------
     shape : (...) of the quantity, moments first.
     mean, rows, band : (outputs,), (parts, outputs), (outputs,) mean, principal components, and the
-        half width of the band; in the logarithm where that is emulated.
+        half width of the band where scenes are missed as much as anywhere; in the logarithm where
+        that is emulated.
     coefficients : (terms, parts).
     scales : (knobs,) lengths of the Gaussian process.
+    missed : (scenes,) by how much each scene is missed by the others, over what is usual; NaN where
+        it has not the quantity. Around a place it is what the band is multiplied by.
     """
 
     shape: tuple[int, ...]
@@ -131,6 +134,7 @@ class Group:
     coefficients: np.ndarray
     band: np.ndarray
     scales: np.ndarray
+    missed: np.ndarray
 
     def folded(self, weights: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
         """Mean and components of the quantity at weighted moments: (m,), (parts, m)."""
@@ -151,7 +155,7 @@ class Group:
         return terms @ (self.coefficients @ rows)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Emulator:
     """What a sweep's scenes answer, between them; see `fingerpad.emulate`.
 
@@ -198,6 +202,10 @@ class Emulator:
     groups: Mapping[str, Group]
     about: Mapping[str, Any]
 
+    def __repr__(self) -> str:
+        box = (f"{k.name} {k.shown(k.low)} to {k.shown(k.high)}" for k in self.knobs)
+        return f"Emulator({len(self.centres)} scenes; {', '.join(box)})"
+
     def terms(self, points: np.ndarray, scales: np.ndarray) -> np.ndarray:
         """Terms (n, polynomials + scenes) at points (n, knobs), SI: the trend's polynomials, and
         the covariance of these lengths with each scene of the sweep.
@@ -226,8 +234,20 @@ class Emulator:
         -------
         dict
             Name -> (n, k, ...) values, SI.
+
+        Raises
+        ------
+        ValueError
+            Points have another shape, or a name is none of the quantities.
         """
-        names = self.quantities if names is None else names
+        names, points = self.quantities if names is None else names, np.asarray(points, float)
+        if points.ndim != 2 or points.shape[1] != len(self.knobs):
+            keys = ", ".join(knob.key for knob in self.knobs)
+            raise ValueError(f"points: has shape {points.shape}; allowed: a row each of {keys}")
+        unknown = {names} if isinstance(names, str) else {*names} - {*self.quantities, *self.groups}
+        if unknown:
+            allowed = f"a tuple of {', '.join(self.quantities)}"
+            raise ValueError(f"names: {', '.join(sorted(unknown))}: is unknown; allowed: {allowed}")
         if ENERGY in names:
             layers = self.layers(points)
             pieces = tuple(n for n, (d, layer) in self.pieces.items() if layer in layers[:, d])
@@ -301,18 +321,17 @@ class Emulator:
             found[np.ix_(rows, *map(np.arange, found.shape[1:-1]), which == depth)] = value[rows]
         return {ENERGY: found}
 
-    def energy_band(self, points: np.ndarray) -> np.ndarray:
-        """Half width (n, moments, receptors) of the band of ``energy_root`` at points, or of its
-        logarithm.
+    def band(self, name: str, points: np.ndarray) -> np.ndarray:
+        """Half width (n, ...) of the band of a quantity at points (n, knobs), or of its logarithm
+        where that is emulated: a conformal band, wider where scenes nearby are missed by more (Lei
+        and others 2018, section 5.2).
         """
-        bands = {
-            name: np.broadcast_to(
-                self.groups[name].band.reshape(self.groups[name].shape),
-                (len(points), *self.groups[name].shape),
-            )
-            for name in self.pieces
-        }
-        return self._joined(points, bands)[ENERGY]
+        if name == ENERGY:
+            bands = {piece: self.band(piece, points) for piece in self.pieces}
+            return self._joined(points, bands)[ENERGY]
+        group = self.groups[name]
+        wider = local_size(scaled(self.knobs, points), self.centres, group.missed)
+        return np.multiply.outer(wider, group.band.reshape(group.shape))
 
     def predict(
         self, scene: Scene | str | Path | Mapping[str, Any], extrapolate: bool = False
@@ -365,6 +384,8 @@ class Emulator:
             data["stroke_distance"] = "time", later
             data["tangential_force"] = "time", load * found["tangential_share"]
             data["tangential_force_error"] = "time", load * bands["tangential_share"]
+        if not slid:
+            found["peak_pressure"] = np.maximum(found["peak_pressure"], found["centre_pressure"])
         for name in self.moments.scalars:
             values = found[name] * (asked.modulus if name in STRESSES else 1.0)
             data[name] = "time", values
@@ -419,13 +440,11 @@ class Emulator:
         near = np.maximum(weights, 0.0)
         near /= near.sum(axis=1, keepdims=True)
         found, known = {}, np.nan if asked.outside else 1.0
-        for name, group in self.groups.items():
-            if name == "estimated_error" or name in self.pieces:
+        for name in self.quantities:
+            if name == "estimated_error":
                 continue
-            band = np.tensordot(near, group.band.reshape(group.shape), 1)
-            found[name] = known * (np.expm1(band) if name in LOGARITHMIC else band)
-        band = np.tensordot(near, self.energy_band(asked.point[None])[0], 1)
-        found[ENERGY] = known * (np.expm1(band) if in_logarithm(ENERGY, self.turned) else band)
+            band = np.tensordot(near, self.band(name, asked.point[None])[0], 1)
+            found[name] = known * (np.expm1(band) if in_logarithm(name, self.turned) else band)
         return found
 
     def _receptors(self, asked: Question) -> list[int]:
@@ -469,6 +488,7 @@ class Emulator:
         }
         attributes = {
             "title": "fingerpad emulator",
+            "scene": json.dumps(asked.scene.canonical()),
             "estimated_error": float(error[0]),
             "outside": "; ".join(asked.outside),
             "modulus_factor": asked.modulus,
@@ -483,7 +503,7 @@ class Emulator:
 
         ``about`` is JSON text: format, knobs, scene, slid, shapes, provenance. Arrays are
         ``press``, ``later``, ``powers``, ``centres``, ``grid_<name>``, and of each quantity
-        ``<name>_mean``, ``_rows``, ``_coefficients``, ``_band`` and ``_scales``.
+        ``<name>_mean``, ``_rows``, ``_coefficients``, ``_band``, ``_scales`` and ``_missed``.
         """
         about = {
             "format": FORMAT,

@@ -41,10 +41,27 @@ function terms(point, scales) {
   const most = Math.max(1, ...model.powers[model.powers.length - 1]);
   const tables = point.map(x => legendre(x, most));
   const trend = model.powers.map(row => row.reduce((product, n, k) => product * tables[k][n], 1));
-  return trend.concat(model.centres.map(centre => {
+  return trend.concat(kernel(point, scales));
+}
+
+function kernel(point, scales) {
+  return model.centres.map(centre => {
     const far = Math.sqrt(5) * Math.hypot(...centre.map((c, k) => (point[k] - c) / scales[k]));
     return (1 + far + far * far / 3) * Math.exp(-far);
-  }));
+  });
+}
+
+// By how much scenes nearby are missed, over what is usual: the band is so much wider.
+function localSize(near, missed) {
+  let weights = 0, around = 0, all = 0, count = 0;
+  missed.forEach((miss, k) => {
+    if (!Number.isFinite(miss)) return;
+    weights += near[k];
+    around += near[k] * miss ** 2;
+    all += miss ** 2;
+    count += 1;
+  });
+  return Math.sqrt((1 - model.from_all) * around / Math.max(weights, 1e-300) + model.from_all * all / count);
 }
 
 function cubicWeights(grid, at) {
@@ -142,14 +159,15 @@ function answer(state) {
   const weights = moments.map(m => momentWeights(m.share, m.hold));
   const found = { outside, time: moments.map(m => top * m.share + m.hold), leg: moments.map(m => +(m.hold > 0)) };
   const size = name => (model.groups[name].stress ? state.modulus : 1);
-  const last = weights[weights.length - 1], near = last.map(w => Math.max(w, 0));
-  const sum = near.reduce((a, b) => a + b, 0), even = near.map(w => w / sum);
+  const last = weights[weights.length - 1].map(w => Math.max(w, 0));
+  const sum = last.reduce((a, b) => a + b, 0), even = last.map(w => w / sum);
+  const near = kernel(point, model.knobs.map(() => model.nearby));
   for (const name of Object.keys(model.groups)) {
     const group = model.groups[name];
     if (name === "estimated_error") { found[name] = Math.exp(flat[name][0]); continue; }
     const over = values => (group.logarithmic ? values.map(v => Math.exp(v) * size(name)) : values);
     found[name] = weights.map(w => over(atMoment(flat[name], w)));
-    const band = atMoment(group.band, even);
+    const wider = localSize(near, group.missed), band = atMoment(group.band, even).map(b => b * wider);
     found[name + "_band"] = group.logarithmic ? band.map(Math.expm1) : band;
   }
   joinEnergies(found, own);

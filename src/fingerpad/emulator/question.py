@@ -19,6 +19,7 @@ import numpy as np
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import WARPS
 from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.stimuli.motion import LEGS
 
 FLAT = 0.05
 """1/m; a cylinder of less curvature departs from a flat plate by less than a micrometre at 6 mm."""
@@ -68,9 +69,9 @@ class Knob:
         values = even(self.low, self.high, 4001)
         return np.interp(shares, self.scaled(values), values)
 
-    def shown(self, value: float) -> str:
+    def shown(self, value: float, digits: int = 4) -> str:
         """A value with its unit."""
-        return f"{value / self.per_unit:.4g} {self.unit if self.unit != '1' else ''}".strip()
+        return f"{value / self.per_unit:.{digits}g} {self.unit if self.unit != '1' else ''}".strip()
 
     def record(self) -> dict[str, Any]:
         """As plain data."""
@@ -97,6 +98,8 @@ class Question:
         Length of the second leg, a hold (s) or a slide (m); None in a scene without.
     receptors : tuple of tuple
         (depth, offset), m.
+    scene : Scene
+        What was asked.
     outside : tuple of str
         A line for each knob outside the box.
     """
@@ -105,6 +108,7 @@ class Question:
     modulus: float
     later: float | None
     receptors: tuple[tuple[float, float], ...]
+    scene: Scene
     outside: tuple[str, ...] = ()
 
 
@@ -205,16 +209,18 @@ def ask(
         if path in (_FORCE, _RATE):
             value /= modulus
         if not knob.low * (1 - SAME) <= value <= knob.high * (1 + SAME):
-            what = knob.shown(value) + (f" at a modulus factor of {modulus:.3g}") * (modulus != 1)
+            what = knob.shown(value, 7) + (f" at a modulus factor of {modulus:.3g}") * (
+                modulus != 1
+            )
             outside.append(str(_refusal(scene.name, knob.key, what, allowed)))
         point.append(value)
-    if modulus != 1:  # what is left of the force and its rate is the sweep's own
-        said |= {p: said[p] / modulus for p in (_FORCE, _RATE) if isinstance(said.get(p), float)}
+    if modulus != 1:  # what is left of the force and its rate is the sweep's own, times the factor
+        known |= {p: known[p] * modulus for p in (_FORCE, _RATE) if isinstance(known.get(p), float)}
     for path in sorted(said.keys() | known.keys(), key=str):
-        _same(scene.name, path, said, known)
+        _same(scene.name, path, said, known, modulus)
     receptors = scene.outputs.receptors
     places = tuple((d, o) for d in receptors.depths for o in receptors.offsets)
-    return Question(np.array(point), modulus, later, places, tuple(outside))
+    return Question(np.array(point), modulus, later, places, scene, tuple(outside))
 
 
 def _plain(canonical: Mapping[str, Any]) -> dict[str, Any]:
@@ -229,8 +235,20 @@ def _same_legs(name: str, said: Mapping[tuple, Any], known: Mapping[tuple, Any])
     """Refuse other legs than the sweep's; a second one may be left out."""
     legs = [{p[1:3] for p in of if p[0] == "motion"} for of in (said, known)]
     if legs[0] not in (legs[1], {leg for leg in legs[1] if leg[0] == 0}):
-        words = [" then ".join(sorted(str(k) for _, k in of)) for of in legs]
+        words = [
+            _programme({p[1:3] for p in of if p[0] == "motion" and of[p] is not None})
+            for of in (said, known)
+        ]
         raise _refusal(name, "motion", words[0], f"{words[1]}, as in the sweep")
+
+
+def _programme(legs: set[tuple[int, str]]) -> str:
+    """The keys of each leg in words, the leg's own before the others."""
+    found = []
+    for number in sorted({leg for leg, _ in legs}):
+        keys = sorted((k for leg, k in legs if leg == number), key=lambda k: (k not in LEGS, k))
+        found.append(keys[0] + " with " * (len(keys) > 1) + " and ".join(keys[1:]))
+    return ", then ".join(found)
 
 
 def _modulus(name: str, said: dict[tuple, Any], known: dict[tuple, Any]) -> float:
@@ -246,14 +264,24 @@ def _modulus(name: str, said: dict[tuple, Any], known: dict[tuple, Any]) -> floa
     return 1.0 if abs(ratios[0] - 1) < SAME else ratios[0]
 
 
-def _same(name: str, path: tuple, said: Mapping[tuple, Any], known: Mapping[tuple, Any]) -> None:
+def _same(
+    name: str,
+    path: tuple,
+    said: Mapping[tuple, Any],
+    known: Mapping[tuple, Any],
+    modulus: float = 1.0,
+) -> None:
     """Refuse another value than the sweep's."""
     value, allowed = said.get(path), known.get(path)
     if not _equal(value, allowed):
-        raise _refusal(name, _dotted(path), _word(value), f"{_word(allowed)}, as in the sweep")
+        times = ", times the factor of the moduli" * (modulus != 1 and path in (_FORCE, _RATE))
+        allowed = f"{_word(allowed)}, as in the sweep{times}"
+        raise _refusal(name, _dotted(path), _word(value), allowed)
 
 
 def _word(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.7g} (SI)"
     return "left out" if value is None else json.dumps(value)
 
 

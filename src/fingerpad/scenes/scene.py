@@ -319,9 +319,7 @@ class Scene(Strict):
     specimen: Specimen
     """What is touched; parts left out are the thesis's."""
     stimulus: Stimulus
-    """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy; in a body of
-    revolution flat, sphere, punch, cone, sampled.
-    """
+    """What touches it: flat, cylinder, bar, line, sampled, wavy, sphere, punch or cone."""
     friction: _Friction = 0.0
     """Coulomb coefficient of friction."""
     motion: Motion
