@@ -14,8 +14,11 @@ def main() -> int:
         need = f"a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB"
         print(f"fingerpad: not enough memory: {need}", file=sys.stderr)
         return 3
-    from fingerpad.cli import main as command
-
+    try:
+        from fingerpad.cli import main as command
+    except KeyboardInterrupt:  # it takes seconds where nothing is compiled
+        print("fingerpad: interrupted", file=sys.stderr)
+        return 130
     return command()
 
 

@@ -303,10 +303,13 @@ def _run(options: argparse.Namespace) -> int:
                 write_vtu(dataset, stage / "vtu", SLICES if options.revolved else 0)
 
         folder.write(results)
+    doubts = totals["run"].get("doubts", [])
     if not options.quiet:
         print(_closing_line(totals, out, unit))
         for note in totals["run"].get("notes", ()):
-            print(f"note: {note}")
+            print(f"{'doubt' if note in doubts else 'note'}: {note}")
+    for doubt in doubts if options.quiet else ():
+        print(f"fingerpad: doubt: {doubt}", file=sys.stderr)
     return DONE
 
 
@@ -568,6 +571,8 @@ class _Folder:
             return "interrupted"
         self._last_converged(dataset, keeping=True)
         when = f"interrupted after t = {float(dataset['time'].values[-1]):.6g} s"
+        if dataset.attrs["complete"]:
+            when = "interrupted while the run was made again with something relaxed"
         return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
 
     def _last_converged(self, dataset: Any, keeping: bool = False) -> None:

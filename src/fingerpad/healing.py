@@ -30,9 +30,9 @@ from fingerpad.specimen.pad import PadMesh
 MOST_FACTORISATIONS = 10.0
 MOST_CUTS = 2
 """Matrices factorised, mean of the states, and cuts of steps above which a run labours."""
-MOST_CHANGE = 0.05
-"""Share by which steps half as long may change a run that meets a corner; with more it doubts
-itself.
+MOST_HALVED, MOST_CHANGE = 2, 0.05
+"""How often the steps of a run that meets a corner are halved, and by what share that may change it
+at last, or it doubts itself.
 """
 FINER = (1.4, 1.9)
 """By how much shorter the edges of a built mesh are made: nearly twice and four times the nodes."""
@@ -292,37 +292,44 @@ class _Runs:
 
 
 def _compared(first: Try, how: Relaxing, runs: _Runs) -> Try:
-    """A run that met a corner; or the same with steps half as long, where those change it and still
-    shorter ones do not. Its notes say what they changed.
+    """A run that met a corner; or the same with steps half as long, where those change it. Its
+    notes say what they changed. It doubts itself if still shorter ones change it too.
     """
-    best, said = first, []
+    if first.problem is not None or not (first.plan.checked and first.history.attrs["singular"]):
+        return first
     by_hand = first.scene.by_hand.steps and how.relax != "everything"
-    while best.rank <= LABOURS and best.plan.checked and best.history.attrs["singular"]:
+    best, said, change = first, [], 0.0
+    for _ in range(1 if by_hand else MOST_HALVED):
         shorter = runs(next(_steps(best.scene, best.plan, everything=True)), best)
         if shorter.problem is not None:
             said.append(f"with steps half as long it breaks off ({shorter.why})")
-        else:
-            change = changes(best.history, shorter.history)
-            most = max(change, key=change.__getitem__)
-            said.append(
-                f"steps half as long changed its {_COMPARED[most]} by {percent(change[most])}"
-            )
-            if change[most] <= MOST_CHANGE:
-                better = shorter if shorter.rank < best.rank and not by_hand else best
-                return _noting(better, ", then ".join(said))
-        if shorter.problem is not None or by_hand or best is not first:
-            doubt = f"{', then '.join(said)}: repeat with a finer mesh to check"
-            return _noting(best, doubt, doubted=True)
-        best = shorter
-    return best
+            break
+        found = changes(best.history, shorter.history)
+        most = max(found, key=found.__getitem__)
+        change, how_much = found[most], f"{percent(found[most])} ({_COMPARED[most]})"
+        said.append(f"with steps half as long the result changes by at most {how_much}")
+        if change <= MOST_CHANGE:
+            better = shorter if shorter.rank < best.rank and not by_hand else best
+            return _noting(better, first, ", then ".join(said))
+        best = best if by_hand else shorter
+    doubt = f"{', then '.join(said)}: repeat with a finer mesh to check"
+    return _noting(best, first, doubt, change)
 
 
-def _noting(found: Try, note: str, doubted: bool = False) -> Try:
-    """A run with one more note, which is a doubt or is none."""
+def _noting(found: Try, first: Try, note: str, change: float | None = None) -> Try:
+    """A run with a note of what shorter steps changed; by ``change``, where that is a doubt: its
+    error is no less. ``first``: the run before any were tried.
+    """
     known = found.history.attrs
     more = {"notes": json.dumps([*json.loads(known["notes"]), note])}
-    if doubted:
+    if change is not None:
         more["doubts"] = json.dumps([*json.loads(known.get("doubts", "[]")), note])
+        for name in ("estimated_error", "largest_error"):
+            more[name] = max(known[name], change)
+        legs = json.loads(known["estimated_error_of_legs"])
+        more["estimated_error_of_legs"] = json.dumps([max(error, change) for error in legs])
+    if found is not first:
+        more["relaxed"] = json.dumps(_record(first, found, note, ["steps: half as long"]))
     return replace(found, history=found.history.assign_attrs(more))
 
 
@@ -531,15 +538,20 @@ def _told(first: Try, best: Try, tried: list[str]) -> xr.Dataset:
         changed = _changed(first, history)
         rest = "" if best.rank == FINE else f"; it still {WORDS[best.rank]} ({best.why})"
         notes.append(f"as planned the run {trouble}: relaxed {kept}; {changed}{rest}")
-    relaxed = {
-        "trouble": WORDS[first.rank],
-        "why": first.why,
-        "tried": tried,
-        "kept": "" if best is first else best.plan.relaxed.said[-1],
-        "ended": WORDS[best.rank],
-    }
+    relaxed = _record(first, best, first.why, tried)
     history.attrs |= {"notes": json.dumps(notes), "relaxed": json.dumps(relaxed)}
     return history
+
+
+def _record(first: Try, best: Try, why: str, tried: list[str]) -> dict[str, Any]:
+    """What a history and its summary say of what was relaxed; ``kept`` is in the history."""
+    return {
+        "trouble": WORDS[first.rank],
+        "why": why,
+        "tried": tried,
+        "kept": (best.plan.relaxed.said or [""])[-1],
+        "ended": WORDS[best.rank],
+    }
 
 
 def _changed(first: Try, history: xr.Dataset) -> str:
@@ -551,4 +563,5 @@ def _changed(first: Try, history: xr.Dataset) -> str:
         for name, change in changes(first.history, history).items()
         if change > _TOLD
     ]
-    return f"that changed {', '.join(said)}" if said else "that changed nothing by half a per cent"
+    less = f"depth, force, width and energy at the ends of legs by less than {percent(_TOLD)}"
+    return f"that changed {', '.join(said) or less}"

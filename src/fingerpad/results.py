@@ -421,6 +421,8 @@ def _run(history: xr.Dataset) -> dict[str, Any]:
     out |= {name: value for name, value in discretisation if name.startswith("profile_")}
     if any("reached the end" in note for note in notes):
         out["contact_reached_profile_end"] = True
+    if "doubts" in attributes:
+        out["doubts"] = json.loads(attributes["doubts"])
     return out | {"notes": notes}
 
 

@@ -31,7 +31,7 @@ _OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 _CHECKED = (
     "which way the skin passes {} may depend on the steps; the run is repeated with steps half as "
-    "long, for twice its cost"
+    "long, which takes {:.2g} s more"
 )
 _KEYS = {
     "state": "moduli_state",
@@ -294,7 +294,9 @@ class Plan:
         lines += [f"note: {note}" for note in self.surface.notes]
         lines += [f"relaxed: {said}" for said in self.relaxed.said]
         if self.checked and self.unbounded:
-            lines.append(f"checked: {_CHECKED.format(self.unbounded.text)}")
+            lines.append(
+                f"checked: {_CHECKED.format(self.unbounded.text, 2 * self.predicted_cost_s)}"
+            )
         lines.append(f"predicted cost: {self.predicted_cost_s:.2g} s of one core")
         return Group(effects, details, *whole, *map(Text, lines))
 

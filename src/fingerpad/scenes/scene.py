@@ -331,8 +331,9 @@ class Scene(Strict):
     effects: Effects = Field(default_factory=dict)
     """auto, or switches for effects that the plan shall not decide."""
     on_trouble: OnTrouble = Field("relax", exclude_if=lambda given: given == "relax")
-    """What a run does that breaks off, labours or doubts itself: relax what the plan chose, step by
-    step, or stop; a mapping says how far it may go.
+    """What a run in trouble does: relax, stop, or a mapping of relax and budget.
+
+    It is in trouble if it breaks off, labours or doubts itself.
     """
 
     @classmethod

@@ -119,6 +119,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
         write_history(history, file)
     return {
         "diagnosis": "",
+        "doubts": "; ".join(json.loads(history.attrs.get("doubts", "[]"))),
         "relaxed": json.loads(history.attrs.get("relaxed", "{}")).get("kept", ""),
         "measures": values,
         "estimated_error": float(history.attrs["estimated_error"]),

@@ -25,6 +25,7 @@ from fingerpad.sweeps.records import read_records
 FAILED = {"long_name": "whether the scene could not be simulated", "units": "1"}
 TEXTS = {
     "diagnosis": {"long_name": "why the scene could not be simulated"},
+    "doubts": {"long_name": "why the run doubts itself"},
     "relaxed": {"long_name": "what was relaxed, as the run was in trouble"},
 }
 RUN = {
@@ -63,6 +64,7 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
     sizes = design["dimensions"]
     shape = tuple(sizes.values())
     counts = {"scenes": len(design["keys"]), "failed": int(columns["failed"][0].sum())}
+    counts["doubted"] = int(np.count_nonzero(columns["doubts"][0] != ""))
     data = xr.Dataset(
         {name: (tuple(sizes), c.reshape(shape), about) for name, (c, about) in columns.items()},
         {p["name"]: _coordinate(p) for p in design["parameters"]},
@@ -148,7 +150,7 @@ def _coordinate(parameter: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str
 
 def _table(data: xr.Dataset, variables: list[str]) -> pd.DataFrame:
     """A row a scene: number, parameters, measures with their units, errors, diagnosis."""
-    last = [*RUN, "relaxed", "failed", "diagnosis"]
+    last = [*RUN, "doubts", "relaxed", "failed", "diagnosis"]
     names = [*data.coords, *(name for name in variables if name not in last), *last]
     frame = data.to_dataframe().reset_index()[names]
     frame = frame.astype(dict.fromkeys(("nodes", "steps", "iterations"), "Int64"))

@@ -130,9 +130,10 @@ def sweep(options: Any) -> None:
 def _closing(layout: Layout) -> str:
     file = layout.folder / "sweep.nc"
     with netCDF4.Dataset(file) as dataset:
-        failed = int(dataset.failed)
+        failed, doubted = int(dataset.failed), int(dataset.doubted)
     ran = "all run"
     if layout.missing < layout.scenes:
         ran = f"{layout.missing} run, {layout.scenes - layout.missing} known from before"
     lost = f"; {failed} could not be simulated, see the column diagnosis" if failed else ""
+    lost += f"; {doubted} completed in doubt, see the column doubts" if doubted else ""
     return f"{layout.scenes} scenes ({ran}){lost}; results in {file} and sweep.csv"

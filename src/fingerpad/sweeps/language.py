@@ -40,8 +40,8 @@ MOST = 1_000_000
 STANDARD = ("indentation_depth", "contact_width", "normal_force", "peak_pressure", "strain_energy")
 """Measures kept unless a sweep says which."""
 RESERVED = (
-    "scene draw relaxed failed diagnosis estimated_error cpu_s nodes steps iterations".split()
-)
+    "scene draw doubts relaxed failed diagnosis estimated_error cpu_s nodes steps iterations"
+).split()
 """Names in the results that no axis can have."""
 _FILES = ("csv", "mesh", "table")
 """Keys whose values are paths."""
