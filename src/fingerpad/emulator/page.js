@@ -152,6 +152,7 @@ function answer(state) {
     const band = atMoment(group.band, even);
     found[name + "_band"] = group.logarithmic ? band.map(Math.expm1) : band;
   }
+  found.peak_pressure = found.peak_pressure.map(([peak], m) => [Math.max(peak, found.centre_pressure[m][0])]);
   joinEnergies(found, own);
   const loads = moments.map(m => m.share * state.values[FORCE] / state.modulus / model.contact_length);
   found.strain_energy_density = found.energy_root.map((row, m) => row.map(r => state.modulus * (r * loads[m]) ** 2));
@@ -222,7 +223,8 @@ function impulses(trace) {
 
 // --- the knobs -----------------------------------------------------------------------------------
 
-const state = { values: {}, modulus: 1, hold: 1 };
+const LONGEST = model.hold[model.hold.length - 1];
+const state = { values: {}, modulus: 1, hold: Math.min(1, LONGEST) };
 const controls = [];
 const STEPS = 1000;
 
@@ -267,7 +269,7 @@ function start() {
   }
   const { low, high } = model.modulus;
   addKnob("knob-modulus", "Factor of all moduli", "", low, high, false, () => state.modulus, v => { state.modulus = v; });
-  addKnob("knob-hold", "Length of the hold", "s", 0, model.hold[model.hold.length - 1], true,
+  addKnob("knob-hold", "Length of the hold", "s", 0, LONGEST, true,
     () => state.hold, v => { state.hold = v; });
   const wanted = { [FORCE]: 20 * 9.80665e-3, [RATE]: 40 * 9.80665e-3, [CURVE]: 209.97 };
   for (const knob of model.knobs) if (within(knob, wanted[knob.key])) state.values[knob.key] = wanted[knob.key];
@@ -309,7 +311,7 @@ function addSubject(subject) {
   button.addEventListener("click", () => {
     state.values[CURVE] = knob.low;
     state.modulus = subject.modulus;
-    state.hold = model.hold[model.hold.length - 1];
+    state.hold = LONGEST;
     draw();
   });
   document.getElementById("subjects").append(button);
@@ -324,7 +326,7 @@ function readLink() {
     if (!Number.isFinite(value)) continue;
     if (knob && within(knob, value * knob.per_unit)) state.values[knob.key] = value * knob.per_unit;
     if (key === "modulus" && value >= model.modulus.low && value <= model.modulus.high) state.modulus = value;
-    if (key === "hold" && value >= 0 && value <= model.hold[model.hold.length - 1]) state.hold = value;
+    if (key === "hold" && value >= 0 && value <= LONGEST) state.hold = value;
   }
 }
 
@@ -391,7 +393,7 @@ function rows(found) {
 }
 
 function draw() {
-  const found = answer(state), whole = answer({ ...state, hold: model.hold[model.hold.length - 1] });
+  const found = answer(state), whole = answer({ ...state, hold: LONGEST });
   const unknown = found.outside.length > 0, body = document.getElementById("numbers");
   controls.forEach(control => control.show());
   document.getElementById("note").textContent = unknown
@@ -519,7 +521,7 @@ function drawForce() {
   const left = [];
   if (state.values[CURVE] > model.flat) left.push("the surface is not flat");
   if (now > most || now < least) left.push("the force lies outside them");
-  if (state.hold < model.hold[model.hold.length - 1]) left.push("the hold is short");
+  if (state.hold < LONGEST) left.push("the hold is short");
   document.getElementById("beyond").textContent =
     `Measured: a plate at rest, ${least.toPrecision(2)} to ${most.toPrecision(3)} N (${model.subjects[0].source}).` +
     (left.length ? ` These knobs leave the measurements: ${left.join(", ")}.` : "");
