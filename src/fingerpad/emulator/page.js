@@ -310,9 +310,13 @@ function start() {
   const away = [];
   if (!model.subjects.length) away.push("force");
   if (new Set(model.grids.receptor_offset).size < 2) away.push("energy");
-  if (steady() === undefined) away.push("time", "rate");
-  else document.getElementById("which").textContent = `Its receptor is ${micrometres(model.grids.receptor_depth[steady()])} deep, under the middle of the contact.`;
-  for (const id of away) document.getElementById(id).parentElement.remove();
+  if (steady() === undefined) {
+    away.push("time", "rate");
+    document.getElementById("under").remove();
+  } else {
+    document.getElementById("which").textContent = `Its receptor is ${micrometres(model.grids.receptor_depth[steady()])} deep, under the middle of the contact.`;
+  }
+  for (const id of away) document.getElementById(id).parentElement.remove(); // there is nothing to draw
   readLink();
   document.getElementById("scenes").textContent = model.scenes;
   document.getElementById("shape").textContent = model.base.stimulus.shape;
@@ -453,10 +457,10 @@ function drawNumbers(found) {
 // What to do where nothing was simulated: the range of each knob that leaves the box.
 function advice(outside) {
   const ranges = outside.map(knob => {
-    const [low, high] = [knob.low, knob.high].map(v => number(v * state.modulus / knob.per_unit, 3));
-    return `${knob.label} ${low} to ${high}\u00a0${knob.unit}`;
+    const low = knob.low * Math.max(state.modulus, 1), high = knob.high * Math.min(state.modulus, 1);
+    return `${knob.label} from ${number(low / knob.per_unit, 3)} to ${number(high / knob.per_unit, 3)}\u00a0${knob.unit}`;
   });
-  return outside.length ? `Unknown: not simulated. At stiffness ${number(state.modulus, 3)} use: ${ranges.join(", ")}.` : "";
+  return outside.length ? `Unknown: not simulated. At stiffness ${number(state.modulus, 3)}, use ${ranges.join(" and ")}.` : "";
 }
 
 function draw() {
@@ -496,7 +500,7 @@ function step(range) {
 
 const ink = k => ({ fill: "none", stroke: LINES[k % 4], "stroke-width": 2, "stroke-dasharray": DASHES[k % 4] });
 const thin = { stroke: "var(--ink)", "stroke-dasharray": "3 3" };
-const dot = (x, y, r, fill = "none") => shape("circle", { cx: x, cy: y, r, fill, stroke: "var(--second)" });
+const measuredDot = chosen => (x, y) => shape("circle", { cx: x, cy: y, r: chosen ? 5 : 3, fill: chosen ? "var(--second)" : "none", stroke: "var(--second)" });
 const here = (x, y) => shape("circle", { cx: x, cy: y, r: 6, fill: "var(--mark)" });
 const disc = (x, y, r) => shape("circle", { cx: x, cy: y, r, fill: "var(--second)", "fill-opacity": 0.75 });
 
@@ -511,8 +515,8 @@ const sample = {
 function legend(svg, items, y) {
   let x = 4;
   for (const [text, sampleAt] of items) {
-    const width = 42 + 7 * text.length;
-    if (x > 4 && x + width > 410) [x, y] = [4, y + 18];
+    const width = 43 + 6.4 * text.length;
+    if (x > 4 && x + width > 418) [x, y] = [4, y + 18];
     svg.append(sampleAt(x + 12, y + 8), shape("text", { x: x + 28, y: y + 12 }, text));
     x += width;
   }
@@ -607,30 +611,28 @@ function depthUnder(force) {
   return Math.exp(atMoment(quantity("indentation_depth", terms(point, group.scales)), momentWeights(1, state.hold))[0]);
 }
 
-function drawForce() {
-  const knob = model.knobs.find(k => k.key === FORCE), now = state.values[FORCE], count = 16;
+function drawForce(found) {
+  const knob = model.knobs.find(k => k.key === FORCE), now = state.values[FORCE], depth = depthUnder(now) * 1e3, count = 16;
   const low = knob.low * state.modulus, high = Math.min(knob.high * state.modulus, Math.max(1.1, now));
   const curve = Array.from({ length: count + 1 }, (_, k) => low * Math.pow(high / low, k / count)).map(f => [depthUnder(f) * 1e3, f]);
-  const depths = model.subjects.flatMap(s => s.points.map(p => p[1] * 1e3));
-  const items = [["emulator", sample.line(ink(0))], ["this touch", (x, y) => here(x, y)]];
-  items.push(["measured fingers", (x, y) => dot(x, y, 3)]);
-  const picture = axes("force", [0, Math.max(...depths, curve[count][0]) * 1.05], [0, high * 1.05], "depth (mm)", "force (N)", items);
+  const measured = model.subjects.flatMap(subject => subject.points.map(([force, deep]) => ({ force, deep: deep * 1e3, chosen: isOf(subject) })));
+  const forces = measured.map(p => p.force), most = Math.max(...forces), least = Math.min(...forces);
+  const items = [["emulator", sample.line(ink(0))], ["this touch", here], ["measured fingers", measuredDot(false)]];
+  if (measured.some(p => p.chosen)) items.push(["chosen finger", measuredDot(true)]);
+  const reach = Math.max(...measured.map(p => p.deep), curve[count][0], depth);
+  const picture = axes("force", [0, reach * 1.05], [0, Math.max(high, most, now) * 1.05], "depth (mm)", "force (N)", items);
   picture.line(curve);
-  for (const subject of model.subjects) {
-    for (const [force, depth] of subject.points) {
-      picture.svg.append(dot(picture.px(depth * 1e3), picture.py(force), ...(isOf(subject) ? [5, "var(--second)"] : [3])));
-    }
-  }
-  picture.svg.append(here(picture.px(depthUnder(now) * 1e3), picture.py(now)));
-  const forces = model.subjects.flatMap(s => s.points.map(p => p[0]));
-  const most = Math.max(...forces), least = Math.min(...forces);
+  const points = measured.map(p => measuredDot(p.chosen)(picture.px(p.deep), picture.py(p.force)));
+  points.forEach(point => point.classList.add("measured"));
+  picture.svg.append(...points);
+  if (!found.outside.length) picture.svg.append(here(picture.px(depth), picture.py(now)));
   const left = [];
   if (state.values[CURVE] > model.flat) left.push("the surface is not flat");
   if (now > most || now < least) left.push(`the force is not from ${plain(least, 2)} to ${plain(most, 3)}\u00a0N`);
   if (state.hold < LONGEST) left.push(`the hold is shorter than ${number(LONGEST, 3)}\u00a0s`);
   document.getElementById("beyond").textContent = `The fingers were measured at rest under a flat plate (${model.subjects[0].source}).` +
-    (left.length ? ` This touch is not comparable: ${left.join(", ")}.` : "");
-  describe("force", `Force against depth. This touch: ${plain(now, 3)} N, ${plain(depthUnder(now) * 1e3, 3)} mm. Points are measured fingers under a plate.`);
+    (left.length ? ` Do not compare this touch with them: ${left.join(", ")}.` : "");
+  describe("force", `Force against depth. This touch: ${plain(now, 3)} N, ${plain(depth, 3)} mm. Points are measured fingers under a plate.`);
 }
 
 function drawPressure(found) {
@@ -685,7 +687,7 @@ function drawRate(found, whole) {
     picture.svg.append(shape("line", { x1: picture.px(t), x2: picture.px(t), y1: picture.top + 2, y2: picture.top + 16, stroke: "var(--ink)", "stroke-opacity": t <= now ? 1 : 0.35 }));
   }
   picture.marker(now);
-  document.getElementById("fast").textContent = fast
+  document.getElementById("fast").textContent = fast && !found.outside.length
     ? `Not real above ${FASTEST} impulses/s: no afferent fires that fast, and the law was fitted to small touches. Impulses are not drawn.` : "";
   const count = fast ? "" : ` ${ticks.filter(t => t <= now).length} impulses until the end of the hold.`;
   describe("rate", `Predicted rate, at most ${plain(most, 3)} impulses/s.${count}`);
