@@ -504,20 +504,20 @@ const measuredDot = chosen => (x, y) => shape("circle", { cx: x, cy: y, r: chose
 const here = (x, y) => shape("circle", { cx: x, cy: y, r: 6, fill: "var(--mark)" });
 const disc = (x, y, r) => shape("circle", { cx: x, cy: y, r, fill: "var(--second)", "fill-opacity": 0.75 });
 
-// Samples of a legend: each draws itself with its middle at (x, y), at most 24 wide.
+// Samples of a legend: each draws itself with its middle at (x, y), at most 20 wide.
 const sample = {
-  line: look => (x, y) => shape("line", { x1: x - 12, x2: x + 12, y1: y, y2: y, ...look }),
+  line: look => (x, y) => shape("line", { x1: x - 10, x2: x + 10, y1: y, y2: y, ...look }),
   upright: look => (x, y) => shape("line", { x1: x, x2: x, y1: y - 7, y2: y + 7, ...look }),
-  band: (x, y) => shape("rect", { x: x - 12, y: y - 5, width: 24, height: 10, fill: "var(--band)" }),
+  band: (x, y) => shape("rect", { x: x - 10, y: y - 5, width: 20, height: 10, fill: "var(--band)" }),
 };
 
 // Writes [text, sample] in lines from y on; gives the y under the last.
 function legend(svg, items, y) {
   let x = 4;
   for (const [text, sampleAt] of items) {
-    const width = 43 + 6.4 * text.length;
+    const width = 42 + 6.6 * text.length;
     if (x > 4 && x + width > 418) [x, y] = [4, y + 18];
-    svg.append(sampleAt(x + 12, y + 8), shape("text", { x: x + 28, y: y + 12 }, text));
+    svg.append(sampleAt(x + 10, y + 8), shape("text", { x: x + 25, y: y + 12 }, text));
     x += width;
   }
   return items.length ? y + 18 : y;
