@@ -13,18 +13,24 @@ import fingerpad
 from fingerpad.emulator import explorer
 from fingerpad.emulator.explorer import page
 from test_browser import BROWSER, PHONE, walk
-from test_emulator import OVER, SCENE, made_up, truth
+from test_emulator import OVER, SCENE, history, made_up, truth
 
 pytestmark = pytest.mark.browser
 
 DRIVE = """<script>
 const found = [];
 const knobs = [...document.querySelectorAll("input[type=range]")];
+const boxes = [...document.querySelectorAll("input[type=number]")];
 function look(what) {
   const answered = answer(state), last = answered.indentation_depth.length - 1;
   found.push({ what, scene: document.getElementById("scene").textContent, rows: rows(answered),
     beyond: document.getElementById("beyond")?.textContent,
-    circles: [...document.querySelectorAll("#force circle")].map(c => +c.getAttribute("r")),
+    circles: [...document.querySelectorAll("#force .measured")].map(c => +c.getAttribute("r")),
+    note: document.getElementById("note").textContent,
+    elements: document.getElementById("elements").textContent,
+    overlays: document.querySelectorAll("svg .outside").length,
+    words: document.getElementById("numbers").textContent,
+    boxes: boxes.map(box => [box.id.replace(/^knob-|-box$/g, ""), box.value]),
     shown: [...document.querySelectorAll("#numbers td:nth-child(2)")].map(cell => cell.textContent),
     impulses: impulses(answered.rate), outside: answered.outside.length,
     time: answered.time[last], error: answered.estimated_error,
@@ -42,12 +48,28 @@ for (const knob of knobs) {
   knob.value = before;
   knob.dispatchEvent(new Event("input"));
 }
+const before = JSON.stringify(state);
+state.modulus = 0.5;
+for (const knob of model.knobs.filter(k => [FORCE, RATE].includes(k.key))) {
+  state.values[knob.key] = knob.high;
+}
+draw();
+look("outside");
+Object.assign(state, JSON.parse(before));
 const began = performance.now();
 for (let k = 0; k < 20; k++) draw();
 const milliseconds = (performance.now() - began) / 20;
 for (const button of document.querySelectorAll("#surfaces button, #subjects button")) {
   button.click();
   look(button.textContent);
+}
+const typed = [], box = document.getElementById("knob-curvature-box");
+const types = [["400", "input"], ["4", "input"], ["4", "change"], ["9999", "change"]];
+for (const [value, kind] of [...types, ["", "change"]]) {
+  const slider = document.getElementById("knob-curvature");
+  box.value = value;
+  box.dispatchEvent(new Event(kind));
+  typed.push([box.value, state.values[CURVE], +slider.value]);
 }
 const saved = link();
 state.hold = 0.1;
@@ -56,8 +78,11 @@ readLink();
 const linked = link() === saved;
 const result = document.createElement("pre");
 result.id = "result";
-result.textContent = JSON.stringify({ found, linked, milliseconds, knobs: knobs.length,
-  unnamed: knobs.filter(k => !k.labels.length).length });
+result.textContent = JSON.stringify({ found, linked, typed, milliseconds,
+  knobs: knobs.map(k => k.id),
+  pictures: [...document.querySelectorAll("svg")].map(e => e.id),
+  unnamed: knobs.filter(k => !k.labels.length).length +
+    boxes.filter(b => !b.getAttribute("aria-label")).length });
 document.body.append(result);
 </script></body>"""
 
@@ -78,6 +103,12 @@ def made(tmp_path_factory, request):
     )
     (folder / "site").mkdir()
     (folder / "site/explorer.html").write_text(page(pad), encoding="utf-8")
+    result, console = drive(pad, folder)
+    return pad, folder, result, console
+
+
+def drive(pad, folder):
+    """What the browser found while every knob of a page was turned, and its console."""
     driven = folder / "driven.html"
     driven.write_text(page(pad).replace("</body>", DRIVE), encoding="utf-8")
     options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
@@ -87,15 +118,14 @@ def made(tmp_path_factory, request):
     )
     text = re.search(r'<pre id="result">(.*?)</pre>', run.stdout, re.S)
     assert text, run.stderr[-2000:]
-    console = re.findall(r"CONSOLE[^\]]*\] (.*)", run.stderr)
-    return pad, folder, json.loads(html.unescape(text[1])), console
+    return json.loads(html.unescape(text[1])), re.findall(r"CONSOLE[^\]]*\] (.*)", run.stderr)
 
 
 def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
     """What the page says of a scene, and what Python says of the scene that the page gives."""
     pad, _, result, _ = made
     looks = [look for look in result["found"] if not look["outside"]]
-    assert result["knobs"] == 6 and len(looks) > 12
+    assert len(result["knobs"]) == 6 and len(looks) > 12
     for look in looks:
         scene = yaml.safe_load(look["scene"])
         scene["outputs"] = {"receptors": {"depths": ["600 um", "915 um"]}}
@@ -105,6 +135,7 @@ def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
         assert look["time"] == pytest.approx(float(found.time[-1]), rel=1e-9)
         assert look["error"] == pytest.approx(found.attrs["estimated_error"], rel=1e-5)
         for row, shown in zip(look["rows"], look["shown"], strict=True):
+            assert row["unit"] == shown.split()[1]
             scale = {"mm": 1e3, "kPa": 1e-3, "Pa": 1.0}[row["unit"]]
             at = next(energies) if row["name"] == "strain_energy_density" else ...
             for value, name in ((row["value"], ""), (row["band"], "_error")):
@@ -118,18 +149,69 @@ def test_numbers_at_both_ends_of_every_knob_are_pythons(made):
 
 def test_the_page_says_where_nothing_is_known(made):
     for look in made[2]["found"]:
-        assert (look["shown"][0] == "\u2013") == bool(look["outside"])
+        outside = bool(look["outside"])
+        assert (look["shown"][0] == "\u2013") == outside == (not look["elements"]), look["what"]
+        assert look["overlays"] == (len(made[2]["pictures"]) if outside else 0)
+        assert bool(look["note"]) == outside
+    notes = {look["what"]: look["note"] for look in made[2]["found"]}
+    ranges = "Force from 5 to 30\u00a0gf and Rate of force from 20 to 40\u00a0gf/s"
+    assert notes["outside"] == f"Unknown: not simulated. At stiffness 0.5, use {ranges}."
+
+
+def test_numbers_have_no_exponents_and_do_not_break(made):
+    for look in made[2]["found"]:
+        assert not re.search(r"\de[+-]?\d|\d (k?Pa|mm)", look["words"]), look["words"]
+
+
+def test_knobs_have_their_order_and_a_box_for_the_number(made):
+    """A number that is typed is kept as it is; one outside the knob goes to its nearer end."""
+    result = made[2]
+    names = ["curvature", "force", "rate", "modulus", "epidermis_thickness", "hold"]
+    assert result["knobs"] == [f"knob-{name}" for name in names]
+    for look in result["found"]:
+        values = dict(part.split("=") for part in look["link"][1:].split("&"))
+        for name, value in look["boxes"]:
+            assert float(value) == pytest.approx(float(values[name]), rel=1e-5), look["what"]
+    typed = result["typed"]
+    assert typed[:3] == [["400", 400, 123], ["4", 4, 1], ["4", 4, 1]]
+    assert typed[3] == typed[4] == ["1300", 1300, 400]
+
+
+@pytest.mark.parametrize(
+    ("receptors", "gone"),
+    [([0, 2], {"energy"}), ([1, 3], {"energy", "time", "rate"})],
+    ids=["middle", "side"],
+)
+def test_a_short_hold_and_receptors_of_one_place(tmp_path, receptors, gone):
+    """The hold starts within the sweep's; pictures that would be empty are not there."""
+    if BROWSER is None:
+        pytest.skip("no chromium here: apt-get install chromium")
+    motion = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "0.5 s"}]
+    outputs = {"receptors": {"depths": ["600 um", "915 um"], "offsets": [f"{receptors[0]} mm"]}}
+    sweep = made_up(
+        tmp_path / "sweep",
+        64,
+        base=SCENE | {"motion": motion, "outputs": outputs},
+        show=lambda scene: history(scene).isel(receptor=receptors),
+    )
+    result, console = drive(fingerpad.emulate(sweep), tmp_path)
+    scene = yaml.safe_load(result["found"][0]["scene"])
+    assert scene["motion"][1] == {"hold": "0.5 s"} and not console
+    pictures = {"section", "force", "pressure", "energy", "time", "rate"}
+    assert set(result["pictures"]) == pictures - gone - {"force"}
+    for look in result["found"]:
+        assert not look["mute"] and not look["broken"], look["what"]
 
 
 def test_measured_fingers_are_drawn_beside_the_force_under_a_plate(made):
     """Four fingers of four points each; the one that is chosen is larger. Of spheres none."""
     pad, _, result, _ = made
-    chosen = [look for look in result["found"] if look["what"].startswith("subject")]
+    chosen = [look for look in result["found"] if look["what"].startswith("finger")]
     assert len(chosen) == (0 if pad.turned else 4)
     for look in chosen:
-        assert sorted(look["circles"]) == 12 * [3] + 4 * [5] and "leave" not in look["beyond"]
+        assert sorted(look["circles"]) == 12 * [3] + 4 * [5] and "Do not" not in look["beyond"]
     if not pad.turned:
-        assert "not flat, the hold is short" in result["found"][0]["beyond"]
+        assert "not flat, the hold is shorter than 2" in result["found"][0]["beyond"]
 
 
 def test_the_factor_of_a_measured_finger_is_found_again(tmp_path, monkeypatch):

@@ -36,10 +36,10 @@ SURFACES = {
 """The nine surfaces of Cysyk (1999): name -> curvature, 1/m."""
 NEEDED = ("stimulus.curvature", "motion[0].press_to_force", "motion[0].rate")
 SHOWN = {
-    "stimulus.curvature": "Curvature of the surface",
+    "stimulus.curvature": "Curvature",
     "motion[0].press_to_force": "Force",
-    "motion[0].rate": "Rate of the force",
-    "specimen.outline.epidermis_thickness": "Thickness of the epidermis",
+    "motion[0].rate": "Rate of force",
+    "specimen.outline.epidermis_thickness": "Epidermis thickness",
 }
 """What the page calls a knob; others have their key."""
 MODULUS = (0.5, 2.0)
