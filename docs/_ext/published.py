@@ -346,7 +346,7 @@ def sweep_costs():
 EMULATED = {
     "indentation_depth": "depth",
     "contact_width": "contact width",
-    "peak_pressure": "highest pressure",
+    "peak_pressure": "peak pressure",
     "centre_pressure": "pressure in the middle",
 }
 """What quantities of an emulator are called; others have their own name."""
@@ -358,7 +358,9 @@ def emulator_errors():
     rows = table("emulator").query("quantity != 'estimated_error'").drop(columns="unseen scenes")
     shown = []
     for name, median, most, covered in rows.itertuples(index=False):
-        energy = re.sub(r"strain_energy_(\d+)_um", lambda m: f"strain energy at {m[1]} um", name)
+        energy = re.sub(
+            r"strain_energy_(\d+)_um", lambda m: f"strain energy density at {m[1]} um", name
+        )
         errors = [f"{digits(median)} %", f"{digits(most)} %", f"{covered:.0f} %"]
         shown.append([EMULATED.get(name, energy), *errors])
     return markdown_table("quantity | median error | 95 % within | in the band", shown)

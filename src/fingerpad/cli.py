@@ -239,7 +239,9 @@ def _parser() -> argparse.ArgumentParser:
     emulate("--out", **file, help="the file of the emulator, such as pad.emulator")
     explore("--out", **file, help="the page, such as explorer.html")
     for option in (run, sweep, emulate):
-        option("--quiet", **is_set, help="no progress bar, no closing line")
+        option(
+            "--quiet", **is_set, help="no progress bar, no closing line; errors and doubts are said"
+        )
     for option in (plan, run, mesh):
         option("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
     sweep("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
@@ -571,7 +573,7 @@ class _Folder:
             return "interrupted"
         self._last_converged(dataset, keeping=True)
         when = f"interrupted after t = {float(dataset['time'].values[-1]):.6g} s"
-        if dataset.attrs["complete"]:
+        if dataset.attrs.get("complete"):
             when = "interrupted while the run was made again with something relaxed"
         return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
 
