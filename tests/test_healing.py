@@ -316,6 +316,22 @@ def test_a_profile_is_smoothed_where_that_leaves_its_shape(profile, smoothed):
     assert ("stimulus" in kinds(PRESS | {"stimulus": stimulus})) == smoothed
 
 
+def test_what_a_remedy_changes_is_said_where_the_run_broke_off(monkeypatch):
+    motion = [{"press_to_depth": "0.5 mm", "speed": "1 mm/s"}]
+    solved = solve(EDGE | {"motion": motion})
+
+    def breaks(scene, how, *_):
+        if how.relaxed.said:
+            return solved.assign(force=1.2 * solved.force)
+        problem = NonConvergence(0.2, "made up", stepping.FOLDED)
+        problem.dataset = solved.isel(time=slice(0, 5))
+        raise problem
+
+    monkeypatch.setattr(healing, "solve", breaks)
+    found = simulate(EDGE | {"motion": motion})
+    assert "t = 0.2 s; there that changed the force by 20 %" in found.attrs["notes"]
+
+
 # -- a mesh of one's own, divided ---
 
 

@@ -26,6 +26,7 @@ from fingerpad.scenes.scene import Bar, Cylinder, Line, Punch, Relaxing, Sampled
 from fingerpad.simulation import solve
 from fingerpad.specimen import MeshError, OutlineError, counted
 from fingerpad.specimen.pad import PadMesh
+from fingerpad.stimuli.motion import NO_TIME
 
 MOST_FACTORISATIONS = 10.0
 MOST_CUTS = 2
@@ -260,12 +261,16 @@ def changes(
     >>> changes(history, history, ["contact_width"])
     {'contact_width': 0.0}
     """
-    ends = leg_ends(one), leg_ends(other)
-    scale = {name: max(float(np.abs(ends[0][name]).max()), 1e-12) for name in names}
+    return _apart(leg_ends(one), leg_ends(other), names)
+
+
+def _apart(one: xr.Dataset, other: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
+    """Largest difference of each quantity between two histories of the same outputs."""
+    scale = {name: max(float(np.abs(one[name]).max()), 1e-12) for name in names}
     if scale.keys() >= {"force", "tangential_force"}:
         scale["tangential_force"] = max(scale["tangential_force"], 0.1 * scale["force"])
     return {
-        name: float(np.abs(ends[0][name].values - ends[1][name].values).max() / most)
+        name: float(np.abs(one[name].values - other[name].values).max() / most)
         for name, most in scale.items()
     }
 
@@ -555,13 +560,20 @@ def _record(first: Try, best: Try, why: str, tried: list[str]) -> dict[str, Any]
 
 
 def _changed(first: Try, history: xr.Dataset) -> str:
-    """What the relaxed run ends with that is not what the first one did."""
+    """What the relaxed run has that the first one did not: at the ends of its legs, or where the
+    first one broke off.
+    """
+    reached = ""
     if first.problem is not None:
-        return f"it had reached t = {first.problem.time:.6g} s"
-    said = [
-        f"the {_COMPARED[name]} by {percent(change)}"
-        for name, change in changes(first.history, history).items()
-        if change > _TOLD
-    ]
-    less = f"depth, force, width and energy at the ends of legs by less than {percent(_TOLD)}"
-    return f"that changed {', '.join(said) or less}"
+        reached = f"it had reached t = {first.problem.time:.6g} s"
+        if first.history is None or first.history.time.values[-1] < NO_TIME:
+            return reached  # its steps take no time, and others have others
+        reached += "; there "
+        names = list(_COMPARED)
+        end = first.history[names].isel(time=[-1])
+        found = _apart(end, history[names].interp(time=end.time), names)
+    else:
+        found = changes(first.history, history)
+    said = [f"the {_COMPARED[n]} by {percent(size)}" for n, size in found.items() if size > _TOLD]
+    less = f"depth, force, width and energy by less than {percent(_TOLD)}"
+    return f"{reached}that changed {', '.join(said) or less}"
