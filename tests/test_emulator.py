@@ -12,7 +12,7 @@ from sklearn.gaussian_process.kernels import Matern
 
 import fingerpad
 from fingerpad.cli import main
-from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel, local_size
+from fingerpad.emulator.basis import basis, cubic_weights, exponents, kernel, local_size, nearby
 from fingerpad.emulator.explorer import page
 from fingerpad.emulator.model import load_emulator
 from fingerpad.sweeps.design import Design
@@ -218,12 +218,10 @@ def test_the_band_is_wider_in_the_corners_of_the_box(tmp_path):
 
 def test_what_is_said_of_a_place_comes_from_scenes_nearby():
     centres, sizes = np.array([[-1.0], [-0.9], [0.9], [1.0]]), np.array([1.0, 2.0, 8.0, np.nan])
-    low, high = local_size(np.array([[-0.95], [0.95]]), centres, sizes)
+    low, high = local_size(nearby(np.array([[-0.95], [0.95]]), centres), sizes)
     every = np.mean(sizes[:3] ** 2)
     assert low**2 == pytest.approx(0.9 * 2.5 + 0.1 * every, rel=1e-3)
     assert high**2 == pytest.approx(0.9 * 64 + 0.1 * every, rel=1e-3)
-    others = local_size(centres, centres, sizes, others=True)
-    assert others[0] ** 2 == pytest.approx(0.9 * 4 + 0.1 * every, rel=1e-2) and np.isnan(others[3])
 
 
 def test_the_low_end_of_an_even_range_is_emulated_as_well(tmp_path):

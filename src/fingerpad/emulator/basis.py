@@ -96,27 +96,21 @@ def kernel(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.nd
     return found
 
 
-def local_size(
-    points: np.ndarray, centres: np.ndarray, sizes: np.ndarray, others: bool = False
-) -> np.ndarray:
-    """Root mean square of sizes (m,) of scenes at centres (m, knobs) around points: (n,).
+def nearby(points: np.ndarray, centres: np.ndarray) -> np.ndarray:
+    """How much (n, m) scenes at centres (m, knobs) tell of their errors at points (n, knobs)."""
+    return kernel(points, centres, np.full(points.shape[1], NEARBY))
 
-    Scenes count by how near they are; a tenth is that of all scenes. ``others``: the points are the
-    centres, and a scene says nothing of itself. A size that is NaN is that of no scene.
+
+def local_size(near: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Root mean square of the sizes (m,) of scenes around points: (n,).
+
+    Scenes count by how near (n, m) they are; a tenth is that of all scenes. A size that is NaN is
+    that of no scene.
     """
     known = np.isfinite(sizes)
-    near = kernel(points, centres[known], np.full(points.shape[1], NEARBY))
-    if others:
-        near = near[known]
-        np.fill_diagonal(near, 0.0)
-    squares = sizes[known] ** 2
-    around = near @ squares / np.maximum(near.sum(axis=1), 1e-300)
-    found = np.sqrt((1 - FROM_ALL) * around + FROM_ALL * squares.mean())
-    if not others:
-        return found
-    every = np.full(len(sizes), np.nan)
-    every[known] = found
-    return every
+    squares = np.where(known, sizes, 0.0) ** 2
+    around = near @ squares / np.maximum(near @ known, 1e-300)
+    return np.sqrt((1 - FROM_ALL) * around + FROM_ALL * squares.sum() / known.sum())
 
 
 def cubic_weights(grid: np.ndarray, at: np.ndarray) -> np.ndarray:

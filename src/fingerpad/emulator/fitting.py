@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, exponents, kernel, local_size
+from fingerpad.emulator.basis import basis, exponents, kernel, local_size, nearby
 from fingerpad.emulator.model import ENERGY, SCALARS, SLID, Emulator, Group, in_logarithm
 from fingerpad.emulator.question import Knob, scaled
 from fingerpad.emulator.samples import Samples, Swept
@@ -287,7 +287,9 @@ def _group(
     usual = np.maximum(usual, max(1e-9 * usual.max(), 1e-300))
     missed_by = np.full(len(terms), np.nan)
     missed_by[rows] = np.sqrt(((miss / usual) ** 2).mean(axis=1))
-    around = local_size(at, at, missed_by, others=True)[rows]
+    near = nearby(at[rows], at)
+    near[np.arange(len(rows)), rows] = 0.0  # a scene says nothing of itself
+    around = local_size(near, missed_by)
     rank = min(int(np.ceil((len(miss) + 1) * COVERED)), len(miss)) - 1
     band = np.sort(np.abs(miss) / np.maximum(around, 1e-300)[:, None], axis=0)[rank]
     return Group(parts.shape, parts.mean, parts.rows, coefficients, band, scales, missed_by)

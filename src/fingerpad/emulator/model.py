@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, local_size, spread
+from fingerpad.emulator.basis import basis, cubic_weights, held, kernel, local_size, nearby, spread
 from fingerpad.emulator.question import Knob, Question, ask, borders, looked_up, scaled
 from fingerpad.files import write_atomically
 from fingerpad.scenes.scene import Scene
@@ -326,11 +326,14 @@ class Emulator:
         where that is emulated: a conformal band, wider where scenes nearby are missed by more (Lei
         and others 2018, section 5.2).
         """
+        return self._band(name, points, nearby(scaled(self.knobs, points), self.centres))
+
+    def _band(self, name: str, points: np.ndarray, near: np.ndarray) -> np.ndarray:
         if name == ENERGY:
-            bands = {piece: self.band(piece, points) for piece in self.pieces}
+            bands = {piece: self._band(piece, points, near) for piece in self.pieces}
             return self._joined(points, bands)[ENERGY]
         group = self.groups[name]
-        wider = local_size(scaled(self.knobs, points), self.centres, group.missed)
+        wider = local_size(near, group.missed)
         return np.multiply.outer(wider, group.band.reshape(group.shape))
 
     def predict(
@@ -440,10 +443,12 @@ class Emulator:
         near = np.maximum(weights, 0.0)
         near /= near.sum(axis=1, keepdims=True)
         found, known = {}, np.nan if asked.outside else 1.0
+        points = asked.point[None]
+        scenes = nearby(scaled(self.knobs, points), self.centres)
         for name in self.quantities:
             if name == "estimated_error":
                 continue
-            band = np.tensordot(near, self.band(name, asked.point[None])[0], 1)
+            band = np.tensordot(near, self._band(name, points, scenes)[0], 1)
             found[name] = known * (np.expm1(band) if in_logarithm(name, self.turned) else band)
         return found
 

@@ -16,7 +16,7 @@ import xarray as xr
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import SOONEST, cubic_weights, held, spread
-from fingerpad.emulator.model import ENERGY, SLID, Moments
+from fingerpad.emulator.model import ENERGY, SLID, Moments, in_logarithm
 from fingerpad.emulator.question import Knob
 from fingerpad.results import read_history
 from fingerpad.stimuli.motion import NO_TIME
@@ -233,7 +233,11 @@ def _row(history: xr.Dataset, moments: Moments, grids: Mapping[str, np.ndarray])
     if moments.slid:
         lateral = history.tangential_force.values / load
         row |= dict(zip(SLID, (at(centre / depth), at(lateral)), strict=True))
-    row[ENERGY] = at(np.sqrt(history.strain_energy_density.values) / load[:, None])
+    roots = np.sqrt(history.strain_energy_density.values) / load[:, None]
+    if in_logarithm(ENERGY, "contact_radius" in history):
+        row[ENERGY] = np.exp(at(np.log(roots)))
+    else:
+        row[ENERGY] = at(roots)
     row["pressure_shape"] = at(_pressure_shapes(history, load, centre, moments.places))
     arc = history.skin_arc.values
     for name in ("skin_displacement_x", "skin_displacement_y"):
