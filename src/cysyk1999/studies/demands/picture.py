@@ -42,7 +42,7 @@ ENDS = {
     "admits its error": "says that it is wrong",
     "fails cleanly": "stopped, said why",
     "wrong": "wrong",
-    "not done": "not run",
+    "not done": "not done in 2 min",
 }
 """Outcome in the table -> in the picture; any other outcome is wrong."""
 COLOURS = dict(

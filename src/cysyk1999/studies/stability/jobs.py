@@ -27,7 +27,7 @@ def stability(project: Project) -> Iterator[Job]:
     yield Job(stability_picture, {"methods": data}, made)
 
 
-SEEDS = (14, 15, 16)
+SEEDS = (11, 12, 13, 14)
 """Of the cases whose ends are published; none was used to tune anything."""
 UNSEEN_PARTS = 4
 
