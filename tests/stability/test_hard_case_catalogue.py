@@ -238,12 +238,13 @@ def test_full_quads_lock():
 
 
 FOUND = '["the energy found is off"]'
+STEPS = '["with steps half as long the result changes by at most 20 % (depth)"]'
 NEAR = '["states near to one another"]'
 UNEVEN = '["pressure goes up and down from node to node"]'
 
 
 @pytest.mark.parametrize(
-    ("beyond", "notes", "error", "outcome"),
+    ("beyond", "doubts", "error", "outcome"),
     [
         ({}, "[]", 0.1, STABLE),
         ({"factorisations": 11}, "[]", 0.1, LABOURS),
@@ -258,14 +259,15 @@ UNEVEN = '["pressure goes up and down from node to node"]'
         ({"halving": 0.2}, "[]", 0.6, ADMITS),
         ({"solver": 0.01}, "[]", 0.1, SILENT),
         ({"solver": 0.01}, NEAR, 0.1, ADMITS),
+        ({"solver": 0.01, "halving": 0.2}, STEPS, 0.1, ADMITS),
         ({"checkerboard": 0.2, "factorisations": 99}, UNEVEN, 0.1, ADMITS),
         ({"checkerboard": 0.2}, "[]", 0.1, SILENT),
     ],
 )
-def test_what_was_found_is_told_from_what_it_took(beyond, notes, error, outcome):
+def test_what_was_found_is_told_from_what_it_took(beyond, doubts, error, outcome):
     """Each measure on the wrong side of its limit is named."""
     fine = {"cuts": 0, "factorisations": 3, "energy": 0.01, "complementarity": 1e-9, "det_f": 0.9}
-    history = xr.Dataset(attrs={"notes": notes, "estimated_error": error})
+    history = xr.Dataset(attrs={"doubts": doubts, "estimated_error": error})
     found = judged(
         next(iter(CATALOGUE.values())), history, fine | {"checkerboard": np.nan} | beyond
     )

@@ -299,9 +299,9 @@ def healed(case: Case, found: Run) -> Run:
             first = Try(*_planned(case, Path(folder)), found.history, found.problem)
             with time_limit(2 * SLOWEST):
                 best = remedied(first)
-            if best.problem is not None:
+            if best.problem is not None or best.history is first.history:
                 return found
-            if best.plan is first.plan:  # it may doubt itself now
+            if best.plan is first.plan:  # it doubts itself now
                 return judged(case, best.history, found.measured)
             measured = measures(best.history)
             if "halving" in case.compare:
