@@ -67,9 +67,12 @@ HARDER = [
         "disc of 0.5 mm, nu 0.4999, sphere",
         "friction 1, punch",
         "heavy plate",
+        "film of 10 um, 1000 times as stiff, sphere",
     )
 ]
-"""Cases of revolution that labour, or stop: tips several radii deep, and a plate on the bone."""
+"""Cases of revolution that labour, or stop: tips several radii deep, and a plate on the bone. A film
+takes 8 or 22 matrices a state, as the machine rounds.
+"""
 STABLE_CASES = [name for name in PICKED if name not in MAY_FAIL]
 
 
@@ -88,7 +91,7 @@ def test_hard_case_of_revolution_is_stable(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", HARDER)
 def test_harder_case_of_revolution_is_right_or_fails_cleanly(name):
-    assert done(name).outcome in (LABOURS, CLEAN)
+    assert done(name).outcome in (STABLE, LABOURS, CLEAN)
 
 
 @pytest.mark.slow
