@@ -70,8 +70,8 @@ HARDER = [
         "film of 10 um, 1000 times as stiff, sphere",
     )
 ]
-"""Cases of revolution that labour, or stop: tips several radii deep, and a plate on the bone. A film
-takes 8 or 22 matrices a state, as the machine rounds.
+"""Cases of revolution that labour, or stop: tips several radii deep, and a plate on the bone. The
+film takes 8 or 22 matrices a state, as the machine rounds.
 """
 STABLE_CASES = [name for name in PICKED if name not in MAY_FAIL]
 
