@@ -229,16 +229,22 @@ def test_steps_that_change_a_run_which_meets_a_corner_are_halved_once_more(by_st
     assert summary(found)["run"]["relaxed"]["kept"] == "steps: half as long"
 
 
-@pytest.mark.parametrize("depths", [{1: 1.0, 2: 1.2, 4: 1.5}, {1: 1.0, 2: None}])
+@pytest.mark.parametrize("depths", [{1: 1.0, 2: 1.2, 4: 2.4}, {1: 1.0, 2: None}])
 def test_a_run_that_its_steps_change_doubts_itself(by_steps, depths):
     by_steps(depths)
     found = simulate(CORNERS | {"on_trouble": {"budget": 6}, "accuracy": {"skin_edge": "0.2 mm"}})
     assert "steps half as long" in found.attrs["doubts"]
-    changed = 0.25 if depths[2] else 0.0
+    changed = 1.0 if depths[2] else 0.0
     run = summary(found)
     assert (
         run["run"]["estimated_error"] >= changed and run["legs"][-1]["estimated_error"] >= changed
     )
+
+
+def test_a_tolerance_that_shorter_steps_refute_is_missed(by_steps):
+    by_steps({1: 1.0, 2: 1.5, 4: 2.55, 8: 4.0, 16: 6.5})
+    found = simulate(CORNERS | {"accuracy": 0.3})
+    assert found.attrs["tolerance"].startswith("asked 30 %, got 70 %: its steps")
 
 
 def test_a_run_in_doubt_is_compared_too(by_steps, monkeypatch):

@@ -252,14 +252,9 @@ def changes(
 
     Examples
     --------
-    >>> press = {
-    ...     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
-    ...     "motion": [{"press_to_force": "20 gf"}],
-    ...     "accuracy": "draft",
-    ... }
-    >>> history = simulate(press)
-    >>> changes(history, history, ["contact_width"])
-    {'contact_width': 0.0}
+    >>> one = xr.Dataset({"leg": ("time", [0, 0, 0]), "force": ("time", [0.0, 1.0, 2.0])})
+    >>> changes(one, one.assign(force=("time", [0.0, 1.0, 1.5])), ["force"])
+    {'force': 0.25}
     """
     return _apart(leg_ends(one), leg_ends(other), names)
 
@@ -333,6 +328,9 @@ def _noting(found: Try, first: Try, note: str, change: float | None = None) -> T
             more[name] = max(known[name], change)
         legs = json.loads(known["estimated_error_of_legs"])
         more["estimated_error_of_legs"] = json.dumps([max(error, change) for error in legs])
+        blamed = replace(found.plan, error_from="its steps, where the skin meets a corner")
+        missed = blamed.missed(more["estimated_error"]) if change > known["estimated_error"] else ""
+        more |= {"tolerance": missed} if missed else {}
     if found is not first:
         more["relaxed"] = json.dumps(_record(first, found, note, ["steps: half as long"]))
     return replace(found, history=found.history.assign_attrs(more))

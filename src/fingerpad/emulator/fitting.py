@@ -25,8 +25,7 @@ TRUNCATED = 5e-4
 """Root mean square of what principal components may leave of a quantity (of its logarithm, or of
 its scale).
 """
-MOST_PARTS, MOST_PARTS_SLID = 14, 40
-"""Principal components of a quantity, and of one of a stroke, along which the contact moves."""
+MOST_PARTS = 14
 DEGREE = 2
 """Of the trend."""
 FREE = 100.0
@@ -207,8 +206,7 @@ def _fit(swept: Swept) -> Emulator:
     at = scaled(knobs, samples.points)
     powers = exponents(len(knobs), DEGREE)
     made = Emulator(knobs, swept.base, swept.moments, grids, powers, at, {}, about)
-    most, turned = MOST_PARTS_SLID if made.moments.slid else MOST_PARTS, made.turned
-    parts = {n: Parts.of(v, n, most) for n, v in samples.values.items() if n != ENERGY}
+    parts = {name: Parts.of(v, name) for name, v in samples.values.items() if name != ENERGY}
     scales = lengths(swept)
     every, terms = np.arange(len(at)), terms_of(at, at, scales)
     groups = {name: _group(terms, at, every, p, scales) for name, p in parts.items()}
@@ -216,9 +214,7 @@ def _fit(swept: Swept) -> Emulator:
     for k, depth in enumerate(np.unique(of)):
         kept = {layer: np.flatnonzero(layers[:, k] == layer) for layer in np.unique(layers[:, k])}
         values = samples.values[ENERGY][..., of == depth]
-        parts = {
-            layer: Parts.of(values[rows], ENERGY, most, turned) for layer, rows in kept.items()
-        }
+        parts = {layer: Parts.of(values[r], ENERGY, made.turned) for layer, r in kept.items()}
         main = max(kept, key=lambda layer: len(kept[layer]))
         scales = _scales(at[kept[main]], [parts[main].scores])
         terms = terms_of(at, at, scales)
@@ -255,16 +251,14 @@ class Parts:
     scores: np.ndarray
 
     @classmethod
-    def of(
-        cls, values: np.ndarray, name: str, most: int = MOST_PARTS, turned: bool = False
-    ) -> Parts:
+    def of(cls, values: np.ndarray, name: str, turned: bool = False) -> Parts:
         """Of values (n, ...)."""
         flat = values.reshape(len(values), -1)
         target = np.log(flat) if in_logarithm(name, turned) else flat
         mean = target.mean(axis=0)
         own, sizes, rows = np.linalg.svd(target - mean, full_matrices=False)
         rest = np.sqrt(np.append(np.cumsum(sizes[::-1] ** 2)[::-1][1:], 0.0) / target.size)
-        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, most, len(sizes))
+        count = min(int(np.argmax(rest <= TRUNCATED)) + 1, MOST_PARTS, len(sizes))
         return cls(values.shape[1:], target, mean, rows[:count], own[:, :count] * sizes[:count])
 
 

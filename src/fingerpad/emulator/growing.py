@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, exponents, kernel, local_size, nearby
+from fingerpad.emulator.basis import basis, exponents, kernel, nearby
 from fingerpad.emulator.fitting import (
     COVERED,
     DEGREE,
@@ -143,7 +143,8 @@ def _next(known: np.ndarray, scales: np.ndarray, off: np.ndarray, count: int) ->
     places = np.clip(TO_ENDS * (2 * drawn - 1), -1, 1)
     if len(scales) <= MOST_CORNERED:
         places = np.vstack([places, list(product((-1.0, 1.0), repeat=len(scales)))])
-    errors = local_size(nearby(places, known), off) ** 2
+    near = nearby(places, known)
+    errors = near @ off**2 / near.sum(axis=1)
     powers = exponents(len(scales), DEGREE)
 
     def covariance(a: np.ndarray, b: np.ndarray) -> np.ndarray:
