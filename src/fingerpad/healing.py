@@ -324,12 +324,12 @@ def _noting(found: Try, first: Try, note: str, change: float | None = None) -> T
     more = {"notes": json.dumps([*json.loads(known["notes"]), note])}
     if change is not None:
         more["doubts"] = json.dumps([*json.loads(known.get("doubts", "[]")), note])
-        for name in ("estimated_error", "largest_error"):
-            more[name] = max(known[name], change)
+        error = max(known["estimated_error"], change)
+        more |= {"estimated_error": error, "largest_error": max(known["largest_error"], change)}
         legs = json.loads(known["estimated_error_of_legs"])
-        more["estimated_error_of_legs"] = json.dumps([max(error, change) for error in legs])
+        more["estimated_error_of_legs"] = json.dumps([max(leg, change) for leg in legs])
         blamed = replace(found.plan, error_from="its steps, where the skin meets a corner")
-        missed = blamed.missed(more["estimated_error"]) if change > known["estimated_error"] else ""
+        missed = blamed.missed(error) if change > known["estimated_error"] else ""
         more |= {"tolerance": missed} if missed else {}
     if found is not first:
         more["relaxed"] = json.dumps(_record(first, found, note, ["steps: half as long"]))
