@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fingerpad import simulate
 from fingerpad.dense_output import at_outputs
 from fingerpad.mechanics.strides import Between, Passage, Strides, Touch, missed
 from fingerpad.stimuli.motion import STEADY, Hold, Lift, PressToForce, Step, programme
@@ -433,6 +434,22 @@ def test_strides_pass_what_need_not_be_found_of_a_press():
         assert sizes == [3, 1]
         strides.found(strides.next()[0])
         assert len(strides.next()[1]) == 5
+
+
+def test_there_is_no_more_friction_than_there_is_between_states():
+    """All of a plate slips from the first state of a stroke on: a spline through the kink there
+    swings by 1 % beyond it.
+    """
+    plate = {
+        "stimulus": {"shape": "flat"},
+        "friction": 8.78,
+        "motion": [{"press_to_force": "0.029 gf"}, {"slide": "2.02 mm"}],
+        "accuracy": "draft",
+    }
+    stroke = simulate(plate).isel(time=slice(10, None))
+    assert stroke.interpolated.any() and (stroke.contact_state == 2).any()
+    over = np.abs(stroke.tangential_force) / stroke.force - 8.78
+    assert abs(float(over.max())) < 1e-6
 
 
 def test_nothing_changes_where_every_output_was_found():

@@ -3,9 +3,10 @@
 
 What the body does goes from state to state along cubic splines through them, twice continuously
 differentiable, for rates are asked of it: one a leg, and another wherever a piece of the contact
-has come or gone, which leaves a kink. They are over the way of a stroke, else over time. The
-contact goes along with the surface (:mod:`fingerpad.mechanics.strides`); where nothing moves along
-it, it is as wide as splines say, and nodes that stay in it have curves of their own.
+has come or gone, or all of a stroked one first slips, which leaves a kink. They are over the way of
+a stroke, else over time. The contact goes along with the surface
+(:mod:`fingerpad.mechanics.strides`); where nothing moves along it, it is as wide as splines say,
+and nodes that stay in it have curves of their own.
 """
 
 from __future__ import annotations
@@ -73,6 +74,8 @@ def at_outputs(
         way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]])
         known, at = (way * found["stroke_distance"], way * place) if way else (time, times)
         kinks = _kinks(found["contact_pressure"][knots] > 0)
+        if way and "contact_state" in found:
+            kinks = np.union1d(kinks, _slip_begins(found["contact_state"][knots]))
         for name in smooth:
             values = found[name][knots]
             if name in _PRESSURES and not way:
@@ -106,6 +109,14 @@ def _kinks(touches: np.ndarray) -> np.ndarray:
     """
     pieces = np.count_nonzero(np.diff(touches.astype(np.int8), axis=1, prepend=0) > 0, axis=1)
     return np.flatnonzero(np.diff(pieces)) + 1
+
+
+def _slip_begins(states: np.ndarray) -> np.ndarray:
+    """The first state (1,) in which all of the contact slips, of those (n, ns) of nodes of a
+    stroke; none (0,) if it does from the start, or never.
+    """
+    slips = (states == 2).any(axis=1) & ~(states == 1).any(axis=1)
+    return np.flatnonzero(slips)[:1] if not slips[0] else np.zeros(0, int)
 
 
 def _through(place, values, kinks, at):
