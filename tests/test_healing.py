@@ -4,6 +4,7 @@ a run without trouble is left as it is.
 
 import json
 import pickle
+import time
 from functools import partial
 from pathlib import Path
 
@@ -260,6 +261,19 @@ def test_a_run_in_doubt_is_compared_too(by_steps, monkeypatch):
     found = simulate(CORNERS)
     assert made[:3] == [1, 2, 4] and found.indentation_depth[-1] == pytest.approx(1.21e-3)
     assert "at most 20 % (depth), then" in found.attrs["notes"] and "doubts" not in found.attrs
+
+
+def test_times_are_those_of_all_runs(by_steps, monkeypatch):
+    """Mutant: of the run that is kept."""
+    made, known = by_steps({1: 1.0, 2: 1.2, 4: 1.2}), healing.solve
+
+    def slow(*args):
+        time.sleep(0.05)
+        return known(*args)
+
+    monkeypatch.setattr(healing, "solve", slow)
+    cost = json.loads(simulate(CORNERS).attrs["cost"])
+    assert made == [1, 2, 4] and cost["wall_s"] > 0.15
 
 
 def test_steps_by_hand_are_kept_beside_the_doubt(by_steps):

@@ -6,6 +6,7 @@ where that folder cannot be written. :data:`JIT` are the options of every loop o
 
 import time
 from contextlib import ExitStack
+from dataclasses import dataclass, field
 from typing import Any
 
 from numba import njit
@@ -53,3 +54,23 @@ event.register("numba:compile", _notice)
 def compiling() -> float:
     """Process time (s) that has gone into compiling loops since the process started."""
     return _notice.spent
+
+
+@dataclass(frozen=True)
+class Stopwatch:
+    """Times since it was made."""
+
+    cpu: float = field(default_factory=time.process_time)
+    wall: float = field(default_factory=time.perf_counter)
+    compiled: float = field(default_factory=lambda: compiling())
+
+    def read(self) -> dict[str, float]:
+        """Process time without that of compiling, which is for the first of all simulations on
+        these elements; that of compiling; and what passed meanwhile; s.
+        """
+        once = compiling() - self.compiled
+        return {
+            "cpu_s": round(time.process_time() - self.cpu - once, 4),
+            "compiling_s": round(once, 4),
+            "wall_s": round(time.perf_counter() - self.wall, 4),
+        }

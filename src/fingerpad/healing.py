@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from fingerpad.compiled import Stopwatch
 from fingerpad.documents import SceneError
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.bounds import PlanError, check_memory, micrometres, percent
@@ -136,7 +137,7 @@ def simulate(
     unless the scene says ``once`` or a mesh is given. A run that breaks off, labours or doubts
     itself is run again with something relaxed that the scene leaves to the plan, unless the scene
     says ``on_trouble: stop``; the history's notes say what was relaxed and what that changed. The
-    history describes the last run.
+    history describes the run that is kept, but its times are those of all runs together.
 
     Parameters
     ----------
@@ -185,11 +186,13 @@ def simulate(
     [0.0, 0.196]
     """
     scene = load_scene(scene)
-    first = attempt(scene, plan or planned(scene), mesh, progress, fields)
-    best = healed(first, mesh, progress, fields)
+    plan = plan or planned(scene)
+    watch = Stopwatch()
+    best = healed(attempt(scene, plan, mesh, progress, fields), mesh, progress, fields)
     if best.problem is not None:
         raise best.problem
-    return best.history
+    cost = json.loads(best.history.attrs["cost"]) | watch.read()
+    return best.history.assign_attrs(cost=json.dumps(cost, sort_keys=True))
 
 
 def attempt(

@@ -5,7 +5,6 @@ history is unfolded.
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ import xarray as xr
 from scipy.spatial import KDTree
 from threadpoolctl import threadpool_limits
 
-from fingerpad.compiled import compiling
+from fingerpad.compiled import Stopwatch
 from fingerpad.dense_output import at_outputs
 from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
@@ -160,7 +159,7 @@ class Simulation:
     """The parts of one simulation, composed by its plan, and their way back to the whole pad."""
 
     def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None, fields: bool = False):
-        self.cpu, self.wall, self.compiling = time.process_time(), time.perf_counter(), compiling()
+        self.watch = Stopwatch()
         self.scene, self.plan, self.parts = scene, plan, plan.parts(scene)
         self.whole = (mesh or mesh_for(scene, plan)).elevated(plan.element)
         self.mesh = self.whole.right_half() if self.parts.half else self.whole
@@ -625,11 +624,8 @@ class Simulation:
         worst = max(
             self.unbounded, key=lambda each: (each.centre, len(each.text)), default=Unbounded()
         )
-        once = compiling() - self.compiling  # for the first of all simulations on these elements
         cost = {
-            "cpu_s": round(time.process_time() - self.cpu - once, 4),
-            "compiling_s": round(once, 4),
-            "wall_s": round(time.perf_counter() - self.wall, 4),
+            **self.watch.read(),
             "peak_rss_MB": round(peak_memory_MB(), 1),
             "nodes": int(len(self.mesh.points)),
             "unknowns": int(self.body.space.size),

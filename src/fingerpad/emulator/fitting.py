@@ -6,7 +6,6 @@ them. The error is that of scenes left out, one at a time, of the whole way from
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,18 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
-from fingerpad.emulator.basis import basis, exponents, kernel, local_size, nearby
+from fingerpad.emulator.basis import exponents, local_size, nearby
 from fingerpad.emulator.model import ENERGY, SCALARS, SLID, Emulator, Group, in_logarithm
+from fingerpad.emulator.process import (
+    DEGREE,
+    SEARCHED,
+    chosen_noise,
+    lengths_of,
+    missed,
+    regressed,
+    size,
+    terms_of,
+)
 from fingerpad.emulator.question import Knob, scaled
 from fingerpad.emulator.samples import Samples, Swept
 
@@ -26,16 +35,6 @@ TRUNCATED = 5e-4
 its scale).
 """
 MOST_PARTS = 14
-DEGREE = 2
-"""Of the trend."""
-FREE = 100.0
-"""Variance of a coefficient of the trend, over that of the Gaussian process."""
-LENGTHS = (0.1, 100.0)
-"""Least and largest length of the Gaussian process; a knob's range is 2."""
-NOISES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
-"""Variance of what no Gaussian process explains, over that of the process."""
-SEARCHED, LEADING = 384, 2
-"""Scenes by which lengths and noise are chosen, and principal components for lengths."""
 SMOOTH = (*SCALARS, *SLID, "pressure_shape", "skin_displacement_x", "skin_displacement_y")
 """Quantities whose lengths are the same."""
 
@@ -125,7 +124,7 @@ def warped(knobs: list[Knob], samples: Samples) -> list[Knob]:
 
     def left(of: list[Knob]) -> float:
         at = scaled(of, samples.points[: len(target)])
-        return _size(missed(terms_of(at, at, np.full(len(of), 2.0)), 1e-4, target))
+        return size(missed(terms_of(at, at, np.full(len(of), 2.0)), 1e-4, target))
 
     for k, knob in enumerate(knobs):
         ways = ("linear", "bent") if knob.warp == "linear" else (knob.warp,)
@@ -134,69 +133,11 @@ def warped(knobs: list[Knob], samples: Samples) -> list[Knob]:
     return knobs
 
 
-def terms_of(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.ndarray:
-    """What `Emulator.terms` gives."""
-    trend = basis(points, exponents(points.shape[1], DEGREE))
-    return np.hstack([trend, kernel(points, centres, scales)])
-
-
-def _regressed(terms: np.ndarray, noise: float, target: np.ndarray):
-    """What predictions of scenes left out one at a time miss (n, parts), and the coefficients
-    (terms, parts) of a Gaussian process about a trend (Rasmussen and Williams 2006, sections 2.7
-    and 5.4.2).
-    """
-    trend, covariance = np.split(terms, [terms.shape[1] - len(terms)], axis=1)
-    total = covariance + FREE * trend @ trend.T
-    total[np.diag_indices(len(total))] += noise
-    inverse = np.linalg.inv(total)
-    weights = inverse @ target
-    return weights / np.diag(inverse)[:, None], np.vstack([FREE * trend.T @ weights, weights])
-
-
-def missed(terms: np.ndarray, noise: float, target: np.ndarray) -> np.ndarray:
-    """What predictions (n, parts) of scenes left out one at a time miss."""
-    return _regressed(terms, noise, target)[0]
-
-
-def chosen_noise(terms: np.ndarray, target: np.ndarray) -> float:
-    """The noise with which scenes left out are missed by least."""
-    return min(NOISES, key=lambda noise: _size(missed(terms, noise, target)))
-
-
-def _size(values: np.ndarray) -> float:
-    return float(np.sqrt((values**2).mean()))
-
-
 def lengths(swept: Swept) -> np.ndarray:
     """Lengths (knobs,) of the Gaussian processes of all but energies."""
     values = swept.samples.values
     parts = [Parts.of(values[name], name).scores for name in SMOOTH if name in values]
-    return _scales(scaled(swept.knobs, swept.samples.points), parts)
-
-
-def _scales(points: np.ndarray, scores: list[np.ndarray]) -> np.ndarray:
-    """Lengths (knobs,) of the Gaussian process that make the scores (n, parts) of the first
-    components of some quantities most likely.
-    """
-    from sklearn.exceptions import ConvergenceWarning  # takes a second
-    from sklearn.gaussian_process import GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
-
-    points = points[:SEARCHED]
-    trend = basis(points, exponents(points.shape[1], DEGREE))
-    rest = np.hstack([score[:SEARCHED, :LEADING] for score in scores])
-    rest = rest - trend @ np.linalg.lstsq(trend, rest, rcond=None)[0]
-    varies = rest.std(axis=0) > 1e-9
-    if not varies.any():
-        return np.full(points.shape[1], LENGTHS[1])
-    lengths = Matern(np.full(points.shape[1], 2.0), LENGTHS, nu=2.5)
-    process = GaussianProcessRegressor(
-        ConstantKernel(1.0, (1e-2, 1e4)) * lengths + WhiteKernel(1e-3, (1e-8, 1.0))
-    )
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # a knob that hardly matters
-        found = process.fit(points, rest[:, varies] / rest[:, varies].std(axis=0)).kernel_
-    return np.broadcast_to(found.k1.k2.length_scale, points.shape[1]).copy()
+    return lengths_of(scaled(swept.knobs, swept.samples.points), parts)
 
 
 def _fit(swept: Swept) -> Emulator:
@@ -216,7 +157,7 @@ def _fit(swept: Swept) -> Emulator:
         values = samples.values[ENERGY][..., of == depth]
         parts = {layer: Parts.of(values[r], ENERGY, made.turned) for layer, r in kept.items()}
         main = max(kept, key=lambda layer: len(kept[layer]))
-        scales = _scales(at[kept[main]], [parts[main].scores])
+        scales = lengths_of(at[kept[main]], [parts[main].scores])
         terms = terms_of(at, at, scales)
         for layer, rows in kept.items():
             if len(rows) > len(knobs) + 1:
@@ -273,7 +214,7 @@ def _group(
     own, some = terms[np.ix_(rows, kept)], rows[:SEARCHED]
     few = terms[np.ix_(some, np.concatenate([np.arange(trend), trend + some]))]
     noise = chosen_noise(few, parts.scores[:SEARCHED])
-    off, found = _regressed(own, noise, parts.scores)
+    off, found = regressed(own, noise, parts.scores)
     coefficients = np.zeros((terms.shape[1], found.shape[1]))
     coefficients[kept] = found
     miss = parts.target - parts.mean - (parts.scores - off) @ parts.rows

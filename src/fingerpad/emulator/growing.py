@@ -18,20 +18,9 @@ import numpy as np
 
 from fingerpad.documents import SceneError
 from fingerpad.emulator.basis import basis, exponents, kernel, nearby
-from fingerpad.emulator.fitting import (
-    COVERED,
-    DEGREE,
-    FREE,
-    chosen_noise,
-    enough,
-    fitted,
-    judge_by,
-    lengths,
-    missed,
-    terms_of,
-    warped,
-)
+from fingerpad.emulator.fitting import COVERED, enough, fitted, judge_by, lengths, warped
 from fingerpad.emulator.model import Emulator
+from fingerpad.emulator.process import DEGREE, FREE, chosen_noise, missed, terms_of
 from fingerpad.emulator.question import scaled
 from fingerpad.emulator.samples import GROWN, Swept
 from fingerpad.scenes.scene import recorded_scene

@@ -62,14 +62,6 @@ LEFT = 0.5759
 """What the Prony series leaves of an instantaneous shear modulus."""
 
 
-def plain(measure: str) -> str:
-    """A measure's name without the definition of the energy."""
-    return next(
-        (measure.removesuffix(k) for k in (*DEFINITIONS[1:], PLANE_STRESS) if measure.endswith(k)),
-        measure,
-    )
-
-
 def _defined(measure: str, unit: str) -> dict[str, str]:
     return {f"{measure}{definition}": unit for definition in DEFINITIONS}
 

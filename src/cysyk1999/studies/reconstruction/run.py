@@ -94,7 +94,7 @@ def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emula
         for ending in (*ENERGIES.values(), pads.PLANE_STRESS)
         for key in evidence.defined(dict.fromkeys(CHAPTERS, ending)).keys
     ]
-    return Emulator.fit(known.to_unit(whole), whole[list(dict.fromkeys(keys))], pads.plain)
+    return Emulator.fit(known.to_unit(whole), whole[list(dict.fromkeys(keys))])
 
 
 def room_of(known: Unknowns, count: int = 256) -> Emulator:
