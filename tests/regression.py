@@ -34,6 +34,9 @@ TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance
 ERROR_TOLERANCE = 0.2
 """The same for the columns of errors, small differences of large numbers."""
 
+ROUND_OFF = 1e-3
+"""% that an error may differ by all the same: what is below is round-off, another on each machine."""
+
 SIMILARITY = 0.98
 """Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
 
@@ -44,6 +47,11 @@ BASELINE_DPI = 60
 def tolerance(column: str) -> float:
     """Relative tolerance of a column. Raises KeyError for a column without one."""
     return ERROR_TOLERANCE if column in PARTS else TOLERANCES[column]
+
+
+def floor(column: str) -> float:
+    """Difference allowed in a column whatever its size, in its unit."""
+    return ROUND_OFF if column in PARTS else 1e-12
 
 
 def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
@@ -84,7 +92,7 @@ def differences(frame: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
                 continue
             scale = np.nanmax(abs(b), initial=0.0)
             worst = np.nanmax(abs(a - b), initial=0.0)
-            if worst > tolerance(column) * scale + 1e-12:
+            if worst > tolerance(column) * scale + floor(column):
                 share = worst / scale if scale else np.inf
                 found.append(f"{name}: {column} differs by {share:.2%} of its largest")
     return sorted(found)
@@ -130,7 +138,7 @@ def summary_differences(new: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
             # the summary has six digits
             allowed = (tolerance(row["column"]) + 5e-6) * max(
                 abs(row["least_old"]), abs(row["largest_old"])
-            ) + 1e-12
+            ) + floor(row["column"])
             for what in ("least", "largest", "mean", "rms"):
                 if abs(row[what] - row[f"{what}_old"]) > allowed:
                     found.append(

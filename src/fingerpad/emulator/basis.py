@@ -4,7 +4,7 @@ knobs about a parabola of them, and cubics in time.
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import combinations_with_replacement as chosen_from
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -44,7 +44,11 @@ def exponents(knobs: int, degree: int) -> np.ndarray:
     >>> exponents(2, 1).tolist()
     [[0, 0], [0, 1], [1, 0]]
     """
-    found = [p for p in product(range(degree + 1), repeat=knobs) if sum(p) <= degree]
+    found = [
+        tuple(np.bincount(chosen, minlength=knobs))
+        for total in range(degree + 1)
+        for chosen in chosen_from(range(knobs), total)
+    ]
     return np.array(sorted(found, key=lambda p: (sum(p), p)), int).reshape(-1, knobs)
 
 

@@ -28,17 +28,19 @@ def terms_of(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.
     return np.hstack([trend, kernel(points, centres, scales)])
 
 
-def regressed(terms: np.ndarray, noise: float, target: np.ndarray):
+def regressed(
+    terms: np.ndarray, noise: float, target: np.ndarray, free: float = FREE
+) -> tuple[np.ndarray, np.ndarray]:
     """What predictions of scenes left out one at a time miss (n, parts), and the coefficients
     (terms, parts) of a Gaussian process about a trend (Rasmussen and Williams 2006, sections 2.7
     and 5.4.2).
     """
     trend, covariance = np.split(terms, [terms.shape[1] - len(terms)], axis=1)
-    total = covariance + FREE * trend @ trend.T
+    total = covariance + free * trend @ trend.T
     total[np.diag_indices(len(total))] += noise
     inverse = np.linalg.inv(total)
     weights = inverse @ target
-    return weights / np.diag(inverse)[:, None], np.vstack([FREE * trend.T @ weights, weights])
+    return weights / np.diag(inverse)[:, None], np.vstack([free * trend.T @ weights, weights])
 
 
 def missed(terms: np.ndarray, noise: float, target: np.ndarray) -> np.ndarray:

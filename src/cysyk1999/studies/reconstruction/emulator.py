@@ -1,20 +1,27 @@
 """An emulator of the design: what a pad that was not simulated would show, and how far off that may
 be.
 
-It is the Gaussian process about a parabola of :mod:`fingerpad.emulator`. Measures of a surface
-share its lengths; those above zero are emulated in their logarithm. The stated error is that of
-pads left out.
+It is the Gaussian process about a parabola of :mod:`fingerpad.emulator`, one a measure; those above
+zero are emulated in their logarithm. The stated error is that of pads left out one at a time, by
+which its length, its noise and how free the parabola is are chosen.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 import pandas as pd
 
 from fingerpad.emulator.basis import basis, exponents, kernel
-from fingerpad.emulator.process import DEGREE, chosen_noise, lengths_of, regressed, terms_of
+from fingerpad.emulator.process import DEGREE, FREE, NOISES, regressed, terms_of
+
+LENGTHS = (2.0, 4.0, 8.0)
+"""Of the Gaussian process, in all unknowns alike; the range of an unknown is 2."""
+FREEDOMS = (FREE, FREE / 100, FREE / 10_000)
+"""Variances of the parabola's coefficients: of these there are nearly as many as pads."""
+PER_MEASURE = ("logarithmic", "error", "q2", "lengths", "mean")
 
 
 @dataclass(frozen=True)
@@ -28,7 +35,8 @@ class Emulator:
     error : (m,) root mean square error of pads left out, of the logarithm where that is emulated.
     q2 : (m,) share of the variance explained of pads left out.
     points : (n, d) the pads fitted to, from -1 to 1.
-    lengths : by surface, (d,) of the Gaussian process.
+    powers : (polynomials, d) degrees of the trend.
+    lengths : (m,) of the Gaussian processes.
     mean, coefficients : (m,), (terms, m).
     """
 
@@ -37,7 +45,8 @@ class Emulator:
     error: np.ndarray
     q2: np.ndarray
     points: np.ndarray
-    lengths: dict[str, np.ndarray]
+    powers: np.ndarray
+    lengths: np.ndarray
     mean: np.ndarray
     coefficients: np.ndarray
 
@@ -55,36 +64,44 @@ class Emulator:
         target = np.where(logarithmic, np.log(np.where(logarithmic, y, 1.0)), y)
         mean, spread = target.mean(axis=0), np.maximum(target.std(axis=0), 1e-300)
         target = (target - mean) / spread
-        names, lengths = list(values.columns), {}
-        missed, found = np.empty_like(target), []
-        for surface, columns in _by_surface(names).items():
-            lengths[surface] = lengths_of(points, [target[:, [k]] for k in columns])
-            terms = terms_of(points, points, lengths[surface])
-            for k in columns:
-                noise = chosen_noise(terms, target[:, k : k + 1])
-                off, coefficients = regressed(terms, noise, target[:, k : k + 1])
-                missed[:, k], found = off[:, 0], [*found, coefficients[:, 0]]
-        error = np.sqrt((missed**2).mean(axis=0))
-        order = np.argsort(np.concatenate(list(_by_surface(names).values())))
-        coefficients = spread * np.stack(found, axis=1)[:, order]
+        powers = exponents(points.shape[1], DEGREE)
+        error, lengths = np.full((2, target.shape[1]), np.inf)
+        coefficients = np.empty((len(powers) + len(points), target.shape[1]))
+        for length in LENGTHS:
+            terms = terms_of(points, points, np.full(points.shape[1], length))
+            for noise, free in product(NOISES, FREEDOMS):
+                missed, found = regressed(terms, noise, target, free)
+                size = np.sqrt((missed**2).mean(axis=0))
+                better = size < error
+                error[better], lengths[better] = size[better], length
+                coefficients[:, better] = found[:, better]
         return cls(
-            names, logarithmic, spread * error, 1 - error**2, points, lengths, mean, coefficients
+            list(values.columns),
+            logarithmic,
+            spread * error,
+            1 - error**2,
+            points,
+            powers,
+            lengths,
+            mean,
+            spread * coefficients,
         )
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
         """Measures (n, m) at shares (n, d)."""
         x = 2 * np.atleast_2d(np.asarray(shares, float)) - 1
-        trend, found = basis(x, exponents(x.shape[1], DEGREE)), np.empty((len(x), len(self.names)))
-        for surface, columns in _by_surface(self.names).items():
-            terms = np.hstack([trend, kernel(x, self.points, self.lengths[surface])])
-            found[:, columns] = terms @ self.coefficients[:, columns]
+        trend, found = basis(x, self.powers), np.empty((len(x), len(self.names)))
+        for length in np.unique(self.lengths):
+            own = self.lengths == length
+            terms = np.hstack([trend, kernel(x, self.points, np.full(x.shape[1], length))])
+            found[:, own] = terms @ self.coefficients[:, own]
         found += self.mean
         return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, found, 0.0)), found)
 
     def only(self, names: list[str]) -> Emulator:
         """The same for some measures, in this order; ValueError for an unknown one."""
         k = [self.names.index(name) for name in names]
-        own = {name: getattr(self, name)[k] for name in ("logarithmic", "error", "q2", "mean")}
+        own = {name: getattr(self, name)[k] for name in PER_MEASURE}
         return replace(self, names=names, coefficients=self.coefficients[:, k], **own)
 
     def deviation(self, shown: np.ndarray) -> np.ndarray:
@@ -104,11 +121,3 @@ class Emulator:
                 "pads": len(self.points),
             }
         )
-
-
-def _by_surface(names: list[str]) -> dict[str, list[int]]:
-    """Which columns belong to each surface."""
-    found: dict[str, list[int]] = {}
-    for k, name in enumerate(names):
-        found.setdefault(name.partition(":")[0], []).append(k)
-    return found
