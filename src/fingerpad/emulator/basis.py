@@ -63,8 +63,9 @@ def basis(points: np.ndarray, powers: np.ndarray) -> np.ndarray:
         (terms, knobs), as `exponents` gives them.
     """
     found = np.ones((len(points), len(powers)))
-    for column, degrees in zip(points.T, powers.T, strict=True):
-        found *= legendre.legvander(column, int(degrees.max(initial=0)))[:, degrees]
+    known = legendre.legvander(points, int(powers.max(initial=0)))
+    for k, degrees in enumerate(powers.T):
+        found *= known[:, k, degrees]
     return found
 
 
