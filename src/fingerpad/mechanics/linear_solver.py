@@ -25,6 +25,12 @@ from scipy.sparse.linalg import splu
 from fingerpad.processes import threads
 
 
+#: SuperLU pivots on the diagonal while that is at least this share of the largest entry of its
+#: column. Other pivots spoil the order of the columns, which keeps the factors of a symmetric
+#: matrix sparse.
+DIAGONAL = 1e-3
+
+
 class FactorisationError(RuntimeError):
     """The matrix is singular to working precision."""
 
@@ -199,7 +205,10 @@ class SuperLUCondensation:
         i, c = self._interior, self.condensed
         try:
             self._lu = splu(
-                matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}
+                matrix[i][:, i],
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=DIAGONAL,
+                options={"SymmetricMode": True},
             )
         except RuntimeError as error:
             raise FactorisationError("the tangent is singular") from error
