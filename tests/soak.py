@@ -104,6 +104,7 @@ def tried(drawn: Drawn, folder: Path) -> str:
 
 def judged(out: Path) -> None:
     """Does a result balance?"""
+    from fingerpad.planning.plan_data import read_plan
     from fingerpad.results import read_history
 
     summary = json.loads((out / "summary.json").read_text())
@@ -133,6 +134,7 @@ def judged(out: Path) -> None:
         if scene["stimulus"]["shape"] == "flat":
             rubbed = np.abs(history.tangential_force.values) - scene["friction"] * force
             beyond["more friction than there is, N/m"] = rubbed.max(), 1e-6 * max(force.max(), 1e-9)
+    within = read_plan(out).newton_tolerance or 1e-4
     length = scene["specimen"]["contact_length"]
     force = "force_N" if scene.get("kinematics") == "axisymmetric" else "force_N_per_m"
     for leg, end in zip(scene["motion"], summary["legs"], strict=True):
@@ -142,7 +144,7 @@ def judged(out: Path) -> None:
         ):
             if leg.get(key):
                 off = abs(end[reached] / (scale * leg[key]) - 1)
-                beyond[f"{reached} {end[reached]:.6g}, off by"] = off, 1e-4
+                beyond[f"{reached} {end[reached]:.6g}, off by"] = off, within
     for what, (value, most) in beyond.items():
         require(value <= most, f"{what}: {value:.3g} of at most {most:.3g}")
 
