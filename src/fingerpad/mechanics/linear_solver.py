@@ -24,7 +24,6 @@ from scipy.sparse.linalg import splu
 
 from fingerpad.processes import threads
 
-
 #: SuperLU pivots on the diagonal while that is at least this share of the largest entry of its
 #: column. Other pivots spoil the order of the columns, which keeps the factors of a symmetric
 #: matrix sparse.
