@@ -35,7 +35,7 @@ ERROR_TOLERANCE = 0.2
 """The same for the columns of errors, small differences of large numbers."""
 
 ROUND_OFF = 1e-3
-"""% that an error may differ by all the same: what is below is round-off, another on each machine."""
+"""% that an error may differ by all the same: less is round-off, other on each machine."""
 
 SIMILARITY = 0.98
 """Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
