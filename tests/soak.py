@@ -138,13 +138,13 @@ def judged(out: Path) -> None:
     length = scene["specimen"]["contact_length"]
     force = "force_N" if scene.get("kinematics") == "axisymmetric" else "force_N_per_m"
     for leg, end in zip(scene["motion"], summary["legs"], strict=True):
-        for key, reached, scale in (
-            ("press_to_force", force, 1 / length),
-            ("press_to_depth", "depth_mm", 1e3),
+        for key, reached, scale, most in (
+            ("press_to_force", force, 1 / length, within),
+            ("press_to_depth", "depth_mm", 1e3, 1e-4),
         ):
             if leg.get(key):
                 off = abs(end[reached] / (scale * leg[key]) - 1)
-                beyond[f"{reached} {end[reached]:.6g}, off by"] = off, within
+                beyond[f"{reached} {end[reached]:.6g}, off by"] = off, most
     for what, (value, most) in beyond.items():
         require(value <= most, f"{what}: {value:.3g} of at most {most:.3g}")
 

@@ -26,6 +26,29 @@ CASES = {
 }
 
 
+@pytest.mark.parametrize("jump", [1.0, 1e3])
+def test_factors_stay_sparse_where_stiffness_jumps(jump, monkeypatch):
+    """Of a square of springs, some of them stiffer; mutant: pivots off the diagonal."""
+    side, fill, known = 30, [], linear_solver.splu
+    corner = np.arange(side**2).reshape(side, side)[:-1, :-1].ravel()
+    cells = corner[:, None] + [0, 1, side + 1, side]
+    pattern = linear_solver.SymmetricPattern(cells, np.arange(side**2)[:, None])
+    stiff = jump ** np.random.default_rng(3).random(side**2)
+    spring = 2.1 * np.eye(4) - 0.5
+    entries = [(spring * np.sqrt(np.outer(stiff[c], stiff[c])))[np.triu_indices(4)] for c in cells]
+    data = pattern.new_data()
+    for where, values in zip(pattern.scatter, entries, strict=True):
+        np.add.at(data, where, values)
+
+    def counted(*args, **options):
+        fill.append(known(*args, **options))
+        return fill[-1]
+
+    monkeypatch.setattr(linear_solver, "splu", counted)
+    linear_solver.SuperLUCondensation(pattern, np.array([0, 1])).factor(data)
+    assert fill[0].nnz < 50 * side**2
+
+
 def by(name, scene, monkeypatch):
     monkeypatch.setenv("FINGERPAD_LINEAR_SOLVER", name)
     history = simulate(scene)

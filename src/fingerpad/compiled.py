@@ -58,11 +58,11 @@ def compiling() -> float:
 
 @dataclass(frozen=True)
 class Stopwatch:
-    """Times since it was made."""
+    """Times since it was made; what it began at, in s."""
 
     cpu: float = field(default_factory=time.process_time)
     wall: float = field(default_factory=time.perf_counter)
-    compiled: float = field(default_factory=lambda: compiling())
+    compiled: float = field(default_factory=compiling)
 
     def read(self) -> dict[str, float]:
         """Process time without that of compiling, which is for the first of all simulations on

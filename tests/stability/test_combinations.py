@@ -11,6 +11,7 @@ import xarray as xr
 
 from cysyk1999.studies.common.documents import FLAT, force, slide
 from cysyk1999.studies.stability.cases import (
+    CATALOGUE,
     COMBINED,
     PICKED,
     Case,
@@ -18,7 +19,7 @@ from cysyk1999.studies.stability.cases import (
 )
 from cysyk1999.studies.stability.combining import APART, DOCUMENT, FACTORS, pairs
 from cysyk1999.studies.stability.invariants import Reactions, difference, mirrored
-from cysyk1999.studies.stability.run import second_solver, simulation
+from cysyk1999.studies.stability.run import other_order, run, second_solver, simulation
 from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
 
@@ -135,6 +136,17 @@ def test_the_other_solver_is_another_and_agrees(tmp_path):
         other = simulation(PRESS, "default", tmp_path).run(None)
     assert '"superlu"' in other.attrs["cost"] and '"superlu"' not in first.attrs["cost"]
     assert difference(first, other) < 1e-5 and leg_ends(other).sizes["time"] == 1
+
+
+@pytest.mark.parametrize("number", [56, 80, 97])
+def test_the_order_of_nodes_changes_no_verdict(number):
+    """Mutant: nodes of the skin that keep their numbers."""
+    case = [*CATALOGUE.values()][number - 1]
+    first = run(case)
+    with other_order():
+        other = run(case)
+    assert other.outcome == first.outcome and difference(first.history, other.history) < 1e-3
+    assert other.measured != first.measured  # it was another order
 
 
 HARD_LAYERS = {

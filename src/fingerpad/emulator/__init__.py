@@ -2,6 +2,6 @@
 
 Question -> basis -> answer. A scene becomes a point of the sweep's box, a modulus factor and a time
 (`question`); Gaussian processes give the principal components of each quantity there (`basis`,
-`fitting`); these give histories, profiles and their bands (`model`). `explorer` writes a page of
-it.
+`process`, `fitting`); these give histories, profiles and their bands (`model`). `explorer` writes a
+page of it.
 """

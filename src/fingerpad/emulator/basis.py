@@ -4,7 +4,7 @@ knobs about a parabola of them, and cubics in time.
 
 from __future__ import annotations
 
-from itertools import combinations_with_replacement as chosen_from
+from itertools import combinations_with_replacement
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -47,7 +47,7 @@ def exponents(knobs: int, degree: int) -> np.ndarray:
     found = [
         tuple(np.bincount(chosen, minlength=knobs))
         for total in range(degree + 1)
-        for chosen in chosen_from(range(knobs), total)
+        for chosen in combinations_with_replacement(range(knobs), total)
     ]
     return np.array(sorted(found, key=lambda p: (sum(p), p)), int).reshape(-1, knobs)
 

@@ -22,7 +22,7 @@ from fingerpad.emulator.process import (
     lengths_of,
     missed,
     regressed,
-    size,
+    root_mean_square,
     terms_of,
 )
 from fingerpad.emulator.question import Knob, scaled
@@ -124,7 +124,7 @@ def warped(knobs: list[Knob], samples: Samples) -> list[Knob]:
 
     def left(of: list[Knob]) -> float:
         at = scaled(of, samples.points[: len(target)])
-        return size(missed(terms_of(at, at, np.full(len(of), 2.0)), 1e-4, target))
+        return root_mean_square(missed(terms_of(at, at, np.full(len(of), 2.0)), 1e-4, target))
 
     for k, knob in enumerate(knobs):
         ways = ("linear", "bent") if knob.warp == "linear" else (knob.warp,)

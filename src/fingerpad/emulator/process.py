@@ -23,7 +23,9 @@ SEARCHED, LEADING = 384, 2
 
 
 def terms_of(points: np.ndarray, centres: np.ndarray, scales: np.ndarray) -> np.ndarray:
-    """What `Emulator.terms` gives."""
+    """Values (n, terms) at points (n, knobs): the parabola, then covariances with centres (m,
+    knobs); scales: (knobs,) lengths.
+    """
     trend = basis(points, exponents(points.shape[1], DEGREE))
     return np.hstack([trend, kernel(points, centres, scales)])
 
@@ -34,6 +36,16 @@ def regressed(
     """What predictions of scenes left out one at a time miss (n, parts), and the coefficients
     (terms, parts) of a Gaussian process about a trend (Rasmussen and Williams 2006, sections 2.7
     and 5.4.2).
+
+    Parameters
+    ----------
+    terms
+        (n, terms) of the scenes at their own places, as `terms_of` gives them.
+    noise, free
+        Variances of what nothing explains and of a coefficient of the trend, over that of the
+        process.
+    target
+        (n, parts).
     """
     trend, covariance = np.split(terms, [terms.shape[1] - len(terms)], axis=1)
     total = covariance + free * trend @ trend.T
@@ -50,10 +62,11 @@ def missed(terms: np.ndarray, noise: float, target: np.ndarray) -> np.ndarray:
 
 def chosen_noise(terms: np.ndarray, target: np.ndarray) -> float:
     """The noise with which scenes left out are missed by least."""
-    return min(NOISES, key=lambda noise: size(missed(terms, noise, target)))
+    return min(NOISES, key=lambda noise: root_mean_square(missed(terms, noise, target)))
 
 
-def size(values: np.ndarray) -> float:
+def root_mean_square(values: np.ndarray) -> float:
+    """Of all values (...)."""
     return float(np.sqrt((values**2).mean()))
 
 

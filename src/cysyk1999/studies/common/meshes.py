@@ -89,3 +89,17 @@ def corners_only(mesh: PadMesh) -> PadMesh:
         element={3: "tri3", 4: "quad4"}[count],
         curves={name: line.astype(np.int32) for name, line in curves.items()},
     )
+
+
+def shuffled(mesh: PadMesh, seed: int) -> PadMesh:
+    """The same mesh with its nodes and elements numbered in another order, drawn by a seed."""
+    draw = np.random.default_rng(seed)
+    number = draw.permutation(len(mesh.points)).astype(np.int32)
+    order = draw.permutation(len(mesh.cells))
+    return replace(
+        mesh,
+        points=mesh.points[np.argsort(number)],
+        cells=number[mesh.cells][order],
+        region=mesh.region[order],
+        curves={name: number[facets] for name, facets in mesh.curves.items()},
+    )

@@ -25,7 +25,7 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 from cysyk1999.publishing.tables import write_frame
-from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.meshes import shuffled, split
 from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from cysyk1999.studies.common.plans import finer as finer_plan
 from cysyk1999.studies.stability.cases import CATALOGUE, DEFAULT, Case, unseen
@@ -162,6 +162,14 @@ class Run:
 def second_solver() -> AbstractContextManager:
     """Solve by the other linear solver, SuperLU."""
     return patch.dict(os.environ, {SOLVER: "superlu"})
+
+
+def other_order(seed: int = 1) -> AbstractContextManager:
+    """Number nodes and elements in another order, drawn by a seed."""
+    return patch(
+        "fingerpad.simulation.mesh_for",
+        lambda scene, chosen: shuffled(mesh_for(scene, chosen), seed),
+    )
 
 
 def _simulate(
